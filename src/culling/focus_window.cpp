@@ -34,8 +34,8 @@ bool FocusWindow::place(const View& whole, std::uint32_t width, std::uint32_t he
   view_.tan_half_fovy *= part_y;
   view_.ortho_height *= part_y;
   view_.aspect *= part_x / part_y;
-  fine_view_ = PixelView(view_, fine_width, fine_height);
-  return fine_view_.sane();
+  fine_view_ = occlusion::OutlineView(PixelView(view_, fine_width, fine_height));
+  return fine_view_.view.sane();
 }
 
 void FocusWindow::take(const DepthBufferView& drawn) {
@@ -54,8 +54,8 @@ PixelRange FocusWindow::finePixels(const BufferPixel& pixel) const {
   };
   const double x = pixel.x - range_.x0, y = pixel.y - range_.y0;
   return {first(x * magnification_x_), first(y * magnification_y_),
-          last((x + 1.0) * magnification_x_, fine_view_.width),
-          last((y + 1.0) * magnification_y_, fine_view_.height)};
+          last((x + 1.0) * magnification_x_, fine_view_.view.width),
+          last((y + 1.0) * magnification_y_, fine_view_.view.height)};
 }
 
 bool FocusWindow::hides(const Box& box, std::span<const BufferPixel> pixels,

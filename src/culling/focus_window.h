@@ -9,9 +9,9 @@
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "sightline/scene/camera.h"
+#include "src/occlusion/box_outline.h"
 #include "src/occlusion/depth_levels.h"
 #include "src/occlusion/pixel_range.h"
-#include "src/scene/pixel_view.h"
 
 namespace sightline::culling {
 
@@ -42,7 +42,7 @@ class FocusWindow {
  private:
   occlusion::PixelRange range_{1, 1, 0, 0};  // empty until place()
   View view_;
-  PixelView fine_view_;
+  occlusion::OutlineView fine_view_;
   double magnification_x_ = 1.0, magnification_y_ = 1.0;
   std::vector<float> depth_;
   occlusion::DepthLevels levels_;

@@ -31,11 +31,21 @@ SeveralBoxes::SeveralBoxes(const ObjectBoxes& boxes, std::span<const Box> object
 void SeveralBoxes::removeHidden(const Frustum& frustum, CullingMethod& method,
                                 std::vector<ObjectId>& visible) {
   candidates_.clear();
+  asked_points_.clear();
   for (std::uint32_t at = 0; at < visible.size(); ++at) {
     if (!of(visible[at]).empty()) {
       candidates_.push_back({at});
+      asked_points_.push_back(seen_points_[visible[at].value]);
     }
   }
+  points_seen_.resize(candidates_.size());
+  method.seesPoints(asked_points_, points_seen_);
+  std::size_t unseen = 0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    candidates_[unseen] = candidates_[i];
+    unseen += points_seen_[i] == 0 ? 1 : 0;
+  }
+  candidates_.resize(unseen);
   hidden_.assign(visible.size(), 0);
   // All candidates at once, a box of each: most objects are seen by their first one.
   while (!candidates_.empty()) {

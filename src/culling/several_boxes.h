@@ -41,6 +41,7 @@ class SeveralBoxes {
   std::vector<Candidate> candidates_, asked_;
   std::vector<MovingBox> asked_boxes_;
   std::vector<Vec3f> asked_points_;
+  std::vector<std::uint8_t> points_seen_;
   std::vector<Visibility> answers_;
   std::vector<std::uint8_t> hidden_;  // by place in `visible`
 };

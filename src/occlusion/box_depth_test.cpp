@@ -161,18 +161,6 @@ struct Refinement {
     std::uint8_t surely[kBlock] = {};  // among them: in some pixel of the cell the box is surely not hidden
   };
 
-  // Functions over the cells of a range: the greatest value over a cell is the one at its lower left corner,
-  // the sum of a term of its column and a term of its row.
-  struct Terms {
-    hn::Vec<Lanes> of_column;
-    float of_row[kBlock];
-    float across;  // so much less is the least value over the cell
-
-    HWY_INLINE hn::Vec<Lanes> at(std::uint32_t row) const {
-      return hn::Add(of_column, hn::Set(Lanes(), of_row[row]));
-    }
-  };
-
   HWY_INLINE Cells ask(std::uint32_t level, const CellRange& range) const {
     const Lanes d;
     const DepthLevel& cells = levels[level];
@@ -186,44 +174,49 @@ struct Refinement {
     const std::uint32_t rows = range.y1 - range.y0 + 1;
     Cells result;
     result.from = readFrom(cells, range);
+    // The functions' values at the lower left corner of a cell, where those over the cell are greatest, and how
+    // much less they may be elsewhere in it.
+    float at_corner[BoxOutline::kSlots], across[BoxOutline::kSlots];
+    for (std::uint32_t slot = 0; slot < BoxOutline::kSlots; ++slot) {
+      const float x = outline.along_x[slot], y = outline.along_y[slot];
+      at_corner[slot] = outline.at_origin[slot] + (std::max(x, 0.0f) + std::max(y, 0.0f)) * size;
+      across[slot] = (std::abs(x) + std::abs(y)) * size;
+    }
+    float of_row[BoxOutline::kFirstFace + BoxOutline::kFaces][kBlock];
+    for (std::uint32_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; ++slot) {
+      for (std::uint32_t i = 0; i < kBlock; ++i) {
+        of_row[slot][i] = outline.along_y[slot] * y_px[i] + at_corner[slot];
+      }
+    }
     forLanes(range, result.from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
-      const auto find = [&](const PixelFunction& f, Terms& terms) HWY_ATTR {
-        const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
-        const float at_origin = f.at_origin + growth;
-        terms.of_column = hn::Mul(hn::Set(d, f.along_x), x_px);
-        for (std::uint32_t i = 0; i < kBlock; ++i) {
-          terms.of_row[i] = f.along_y * y_px[i] + at_origin;
-        }
-        terms.across = (std::abs(f.along_x) + std::abs(f.along_y)) * size;
+      hn::Vec<Lanes> of_column[BoxOutline::kFirstFace + BoxOutline::kFaces];
+      for (std::uint32_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; ++slot) {
+        of_column[slot] = hn::Mul(hn::Set(d, outline.along_x[slot]), x_px);
+      }
+      const auto at = [&](std::uint32_t slot, std::uint32_t row) HWY_ATTR {
+        return hn::Add(of_column[slot], hn::Set(d, of_row[slot][row]));
       };
-      Terms faces[3], edges[6];
-      for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-        find(outline.faces[i], faces[i]);
-      }
-      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-        find(outline.edges[i], edges[i]);
-      }
       const float* from = cells.min + std::size_t{range.y0} * cells.stride + result.from + lane;
       for (std::uint32_t row = 0; row < rows; ++row, from += cells.stride) {
         const auto min = hn::LoadU(d, from);
         auto own = nearest;
-        for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-          own = hn::Min(own, faces[i].at(row));
+        for (std::uint32_t i = 0; i < BoxOutline::kFaces; ++i) {
+          own = hn::Min(own, at(BoxOutline::kFirstFace + i, row));
         }
         auto open = hn::And(in_range, hn::Le(min, own));
         if (hn::AllFalse(d, open)) {
           continue;
         }
-        for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-          open = hn::And(open, hn::Ge(edges[i].at(row), hn::Zero(d)));
+        for (std::uint32_t i = 0; i < BoxOutline::kEdges; ++i) {
+          open = hn::And(open, hn::Ge(at(i, row), hn::Zero(d)));
         }
         // A pixel of the cell is not before the box's farthest point.
         auto surely = hn::And(open, hn::Le(min, farthest));
         if (!hn::AllFalse(d, surely)) {
           // All of the cell lies in the outline.
-          for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-            surely = hn::And(surely, hn::Ge(edges[i].at(row), hn::Set(d, edges[i].across)));
+          for (std::uint32_t i = 0; i < BoxOutline::kEdges; ++i) {
+            surely = hn::And(surely, hn::Ge(at(i, row), hn::Set(d, across[i])));
           }
         }
         result.open[row] |= static_cast<std::uint8_t>(bitsOf(open, lane));
@@ -371,8 +364,9 @@ void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const B
 // outline and its faces hold for those points of it that are before the eye.
 //
 // Where it does not, sets *seen_point as setPoint() does.
-bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+bool hidesUnbounded(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                     Vec3f* seen_point) {
+  const PixelView& view = outline_view.view;
   constexpr std::uint32_t kMaxRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
   if (!hasOutline(view, box)) {
     return false;
@@ -390,11 +384,11 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
     return false;
   }
   const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
-  const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
+  const BoxOutline outline = outlineOf(outline_view, box, 0, 0, reach);
   // Without faces the eye is in the box or on it, or nothing is known of them.
   Refinement refinement(levels, image, outline);
   refinement.rows_left = kMaxRows;
-  if (outline.face_count == 0) {
+  if (!outline.has_faces) {
     return false;
   }
   const bool open = refinement.anyOpen(level, all);
@@ -409,8 +403,9 @@ struct Question {
   Vec3f* seen_point = nullptr;  // BoxHints::seen_points
 };
 
-Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+Visibility testOne(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                    const PixelBox& image, const Question& question) {
+  const PixelView& view = outline_view.view;
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }
@@ -418,7 +413,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
     return Visibility::kPartial;
   }
   if (image.place == BoxPlace::kUnbounded) {
-    return !question.not_hidden && hidesUnbounded(levels, view, box, question.seen_point)
+    return !question.not_hidden && hidesUnbounded(levels, outline_view, box, question.seen_point)
                ? Visibility::kHidden
                : Visibility::kPartial;
   }
@@ -434,7 +429,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   if (question.not_hidden || (question.seen_point == nullptr && seenAtCentre(levels[0], view, box, image))) {
     return Visibility::kPartial;
   }
-  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
+  const BoxOutline outline = outlineOf(outline_view, box, image.x0, image.y0, reachOf(image, level));
   Refinement refinement(levels, image, outline);
   if (refinement.anyOpen(level, range)) {
     setPoint(levels, view, box, refinement.open, question.seen_point);
@@ -447,6 +442,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
 
 void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
+  const OutlineView outline_view(view);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
     if (!hints.seen.empty() && hints.seen[i] != 0) {
@@ -457,12 +453,12 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
     const Question question{.plain = i >= hints.plain_from,
                             .not_hidden = !hints.not_hidden.empty() && hints.not_hidden[i] != 0,
                             .seen_point = hints.seen_points.empty() ? nullptr : &hints.seen_points[i]};
-    answers[i] = image.answer(testOne(levels, view, boxes[i], image, question));
+    answers[i] = image.answer(testOne(levels, outline_view, boxes[i], image, question));
   }
 }
 
-std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                         const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
+std::uint32_t openPixelsOf(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
+                           const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
   if (image.place == BoxPlace::kOutside) {
     return 0;
   }
@@ -475,7 +471,7 @@ std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& vi
   if (allNearer(levels[level], range, image.nearest)) {
     return 0;
   }
-  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
+  const BoxOutline outline = outlineOf(outline_view, box, image.x0, image.y0, reachOf(image, level));
   const std::size_t before = pixels.size();
   Refinement refinement(levels, image, outline);
   refinement.rows_left = kMaxRows;
@@ -486,9 +482,18 @@ std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& vi
   return static_cast<std::uint32_t>(pixels.size() - before);
 }
 
-bool hidesWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+void openPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+                std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
+                std::vector<BufferPixel>& pixels) {
+  const OutlineView outline_view(view);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    counts[i] = openPixelsOf(levels, outline_view, boxes[i], images[i], max, pixels);
+  }
+}
+
+bool hidesWithin(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                  std::span<const PixelRange> ranges) {
-  if (levels.empty() || !hasOutline(view, box)) {
+  if (levels.empty() || !hasOutline(outline_view.view, box)) {
     return false;
   }
   PixelBox image;                                     // the rectangle around the ranges
@@ -503,8 +508,8 @@ bool hidesWithin(std::span<const DepthLevel> levels, const PixelView& view, cons
   }
   std::uint32_t level = 0;
   finestRange(image, level);
-  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
-  if (outline.face_count == 0) {
+  const BoxOutline outline = outlineOf(outline_view, box, image.x0, image.y0, reachOf(image, level));
+  if (!outline.has_faces) {
     return false;
   }
   Refinement refinement(levels, image, outline);
@@ -529,12 +534,13 @@ HWY_EXPORT(testAll);
 HWY_EXPORT(openPixels);
 HWY_EXPORT(hidesWithin);
 
-std::uint32_t findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                             const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
-  return HWY_DYNAMIC_DISPATCH(openPixels)(levels, view, box, image, max, pixels);
+void findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+                    std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
+                    std::vector<BufferPixel>& pixels) {
+  HWY_DYNAMIC_DISPATCH(openPixels)(levels, view, boxes, images, max, counts, pixels);
 }
 
-bool hidesBoxWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+bool hidesBoxWithin(std::span<const DepthLevel> levels, const OutlineView& view, const Box& box,
                     std::span<const PixelRange> ranges) {
   return HWY_DYNAMIC_DISPATCH(hidesWithin)(levels, view, box, ranges);
 }

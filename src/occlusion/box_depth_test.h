@@ -7,6 +7,7 @@
 
 #include "sightline/math/box.h"
 #include "sightline/occlusion/depth_pyramid.h"
+#include "src/occlusion/box_outline.h"
 #include "src/occlusion/depth_levels.h"
 #include "src/occlusion/pixel_boxes.h"
 #include "src/occlusion/pixel_range.h"
@@ -23,14 +24,16 @@ namespace sightline::occlusion {
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 
-// Appends the pixels in which the buffer does not surely hide a box, and returns how many. Returns
-// kManyPixels and appends none where they are more than `max`, where the box reaches the near plane, and
-// without levels. image: of the box. Every instruction set gives the same pixels in the same order.
-std::uint32_t findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                             const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels);
+// Appends, box by box, the pixels in which the buffer does not surely hide it, and sets counts[i] to how many
+// they are. It is kManyPixels, and none are appended, where they are more than `max`, where the box reaches the
+// near plane, and without levels. images and counts: one for each box. Every instruction set gives the same
+// pixels in the same order.
+void findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+                    std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
+                    std::vector<BufferPixel>& pixels);
 // Whether the buffer surely hides what of a box lies in these pixels and beyond the near plane. ranges: not
 // empty.
-bool hidesBoxWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+bool hidesBoxWithin(std::span<const DepthLevel> levels, const OutlineView& view, const Box& box,
                     std::span<const PixelRange> ranges);
 
 }  // namespace sightline::occlusion

@@ -153,10 +153,8 @@ void DepthPyramid::openPixels(std::span<const Box> boxes, std::uint32_t max, std
   PixelBox images[kGroup];
   forGroups(boxes.size(), [&](std::size_t first, std::size_t count) {
     projectBoxes(impl_->projection, boxes.subspan(first, count), {images, count});
-    for (std::size_t i = 0; i < count; ++i) {
-      counts[first + i] =
-          findOpenPixels(impl_->usableLevels(), impl_->view, boxes[first + i], images[i], max, pixels);
-    }
+    findOpenPixels(impl_->usableLevels(), impl_->view, boxes.subspan(first, count), {images, count}, max,
+                   counts.subspan(first, count), pixels);
   });
 }
 

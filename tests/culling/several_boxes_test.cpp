@@ -121,6 +121,55 @@ TEST(SeveralBoxes, LooksFirstAtTheBoxThatWasSeenLast) {
   EXPECT_EQ(kept.size(), 1u);
 }
 
+// Says of each box what a function says. Sees the points that it told of boxes, as long as `sees`.
+class Pointing final : public CullingMethod {
+ public:
+  MethodTraits traits() const override { return {}; }
+  void prepare(const CullingScene&) override {}
+  void traverse(const CullingFrame&, CullStats&, std::vector<ObjectId>&) override {}
+  void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
+    asked += boxes.size();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      ASSERT_NE(boxes[i].seen_point, nullptr);
+      EXPECT_TRUE(contains(boxes[i].box, Box{*boxes[i].seen_point, *boxes[i].seen_point})) << "the point of another box";
+      states[i] = boxes[i].box.min.x > hidden_to ? Visibility::kPartial : Visibility::kHidden;
+      if (states[i] == Visibility::kPartial) {
+        *boxes[i].seen_point = boxes[i].box.max;
+      }
+    }
+  }
+  void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      seen[i] = points[i].x > hidden_to + 1.0f ? 1 : 0;
+    }
+  }
+
+  float hidden_to = 0.0f;
+  std::size_t asked = 0;
+};
+
+TEST(SeveralBoxes, AreNotAskedWhereTheirPointIsStillSeen) {
+  ObjectBoxes boxes{.first = {0, 3}, .boxes = {cube(-2, 0, 0), cube(0, 0, 0), cube(2, 0, 0)}};
+  const std::vector<Box> bounds{{{-2.5f, -0.5f, -0.5f}, {2.5f, 0.5f, 0.5f}}};
+  SeveralBoxes several(boxes, bounds);
+  Pointing method;
+  const auto keeps = [&](float hidden_to) {
+    method.hidden_to = hidden_to;
+    method.asked = 0;
+    std::vector<ObjectId> kept{ObjectId(0u)};
+    several.removeHidden(frustumOf(ahead()), method, kept);
+    return !kept.empty();
+  };
+  EXPECT_TRUE(keeps(0.0f));
+  EXPECT_EQ(method.asked, 3u) << "the first point is the centre of the first box";
+  EXPECT_TRUE(keeps(0.1f));
+  EXPECT_EQ(method.asked, 0u);
+  EXPECT_FALSE(keeps(9.0f));
+  EXPECT_EQ(method.asked, 3u);
+  EXPECT_TRUE(keeps(-5.0f));
+  EXPECT_EQ(method.asked, 0u);
+}
+
 TEST(SeveralBoxes, OthersThanTheObjectsAreNotUsed) {
   Scripted method([](const Box&) { return Visibility::kHidden; });
   const ObjectBoxes boxes{.first = {0, 2}, .boxes = {cube(-2, 0, 0), cube(2, 0, 0)}};

@@ -132,6 +132,35 @@ TEST(WideTraversal, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
   EXPECT_GT(judged, 200);
 }
 
+// The points at which boxes were seen in earlier views change no answer.
+TEST(WideTraversal, KeepsInEachViewOfAWalkWhatItKeepsInThatViewAlone) {
+  std::size_t kept = 0, changed = 0;
+  for (const test::Family& family : test::kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+      Bed bed(family, seed, 300);
+      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+      WideTraversal traversal(bvh, bed.boxes);
+      const OccluderSet set = test::setOf(bed.scene.polygons);
+      const Vec3d step = bed.scene.random.point(0.3) * bed.scene.scale;
+      std::vector<ObjectId> before;
+      for (int view = 0; view < 12; ++view) {
+        bed.scene.view.eye += step;
+        bed.pyramid.build(bed.scene.view, set, test::all(set));
+        WideTraversal alone(bvh, bed.boxes);
+        const Answer expected = traversed(alone, bed.pyramid), answer = traversed(traversal, bed.pyramid);
+        EXPECT_EQ(answer.kept, expected.kept) << family.name << ", seed " << seed << ", view " << view;
+        EXPECT_EQ(answer.stats.objects_tested, expected.stats.objects_tested);
+        EXPECT_EQ(answer.stats.nodes_tested, expected.stats.nodes_tested);
+        kept += answer.kept.size();
+        changed += answer.kept != before ? 1 : 0;
+        before = answer.kept;
+      }
+    }
+  }
+  EXPECT_GT(kept, 10000u);
+  EXPECT_GT(changed, 100u);
+}
+
 // Objects that were kept are not tested again for a few views: they are kept while they are in the view.
 TEST(WideTraversal, CoherenceKeepsALittleMoreForAWhile) {
   std::size_t lingering = 0;

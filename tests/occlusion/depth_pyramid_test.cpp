@@ -134,6 +134,72 @@ TEST(DepthPyramid, BeforeItIsFinishedNothingOnTheMapIsHidden) {
   EXPECT_NE(pyramid.classify(behind), Visibility::kHidden);
 }
 
+TEST(DepthPyramid, SeesPointsThatNothingIsBefore) {
+  const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
+  const DepthPyramid pyramid = pyramidOf(walls, kLookingBack);
+  const Vec3f points[] = {{0.01f, 0.01f, -4}, {3, 0.01f, -6},    {0.01f, 0.01f, -6},
+                          {0.01f, 0.01f, 4},  {90, 0.01f, -6}, {0.01f, 0.01f, -2e4f}};
+  std::uint8_t seen[std::size(points)] = {};
+  pyramid.seesPoints(points, seen);
+  EXPECT_EQ(seen[0], 1) << "before the wall";
+  EXPECT_EQ(seen[1], 1) << "beside the wall";
+  EXPECT_EQ(seen[2], 0) << "behind the wall";
+  EXPECT_EQ(seen[3], 0) << "behind the eye";
+  EXPECT_EQ(seen[4], 0) << "beside the view";
+  EXPECT_EQ(seen[5], 0) << "beyond the far plane";
+  DepthPyramid unfinished;
+  unfinished.begin(kLookingBack);
+  std::ranges::fill(seen, std::uint8_t{1});
+  unfinished.seesPoints(points, seen);
+  EXPECT_TRUE(std::ranges::all_of(seen, [](std::uint8_t s) { return s == 0; }));
+}
+
+// What a box is known by from earlier views saves time and changes no answer.
+TEST(DepthPyramid, ABoxIsNotHiddenWhereAPointOfItIsSeen) {
+  std::size_t points_seen = 0, found = 0, lost = 0, hidden = 0;
+  for (const Family& family : kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      RandomScene scene(family, seed);
+      const DepthPyramid pyramid = pyramidOf(scene.polygons, scene.view);
+      std::vector<Box> boxes;
+      std::vector<Vec3f> points;
+      for (int i = 0; i < 150; ++i) {
+        boxes.push_back(scene.randomBox());
+        const Box& box = boxes.back();
+        Vec3f point;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double t = scene.random.in(0.0, 1.0);
+          point[axis] = static_cast<float>(box.min[axis] + t * (static_cast<double>(box.max[axis]) - box.min[axis]));
+        }
+        points.push_back(max(box.min, min(point, box.max)));
+      }
+      std::vector<BoxAnswer> answers(boxes.size()), known(boxes.size());
+      std::vector<std::uint8_t> seen(boxes.size());
+      pyramid.classify(boxes, answers);
+      pyramid.seesPoints(points, seen);
+      std::vector<Vec3f> updated = points;
+      pyramid.classify(boxes, known, {.not_hidden = seen, .seen_points = updated});
+      std::vector<std::uint8_t> seen_now(boxes.size());
+      pyramid.seesPoints(updated, seen_now);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const bool is_hidden = answers[i].visibility == Visibility::kHidden;
+        EXPECT_FALSE(is_hidden && seen[i] != 0) << family.name << ", seed " << seed << ", box " << i;
+        EXPECT_EQ(known[i].visibility, answers[i].visibility) << family.name << ", seed " << seed;
+        EXPECT_TRUE(contains(boxes[i], Box{updated[i], updated[i]})) << family.name << ", seed " << seed;
+        EXPECT_TRUE(!is_hidden || updated[i] == points[i]) << family.name << ", seed " << seed;
+        points_seen += seen[i];
+        hidden += is_hidden ? 1 : 0;
+        if (answers[i].visibility == Visibility::kPartial && seen[i] == 0) {
+          ++(seen_now[i] != 0 ? found : lost);
+        }
+      }
+    }
+  }
+  EXPECT_GT(points_seen, 1000u);
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_GT(found, lost) << "points that are remembered are those that are seen";
+}
+
 TEST(DepthPyramid, TheVolumeAloneHidesNothingWithinIt) {
   const std::vector<OraclePolygon> walls{wall(-9, 9, -9, 9, -5)};
   const DepthPyramid pyramid = pyramidOf(walls, kLookingBack);

@@ -244,5 +244,101 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
   }
 }
 
+// ---- Points
+
+Vec3f randomPoint(ViewRandom& random, const Box& box) {
+  Vec3f point;
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis] = static_cast<float>(random.in(box.min[axis], box.max[axis]));
+  }
+  return point;
+}
+
+TEST(PixelPoints, LieInTheirPixelsAndAreNoFartherThanTheySay) {
+  int known = 0, unknown = 0;
+  for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
+    ViewRandom random(seed);
+    const View eye_view = randomView(random);
+    const PixelView view(eye_view, kWidth, kHeight);
+    const Vec3f point = randomPoint(random, randomBox(random, eye_view));
+    PointImage image;
+    projectPoints(BoxProjection(view, kWidth, kHeight), {&point, 1}, {&image, 1});
+    const Box box{point, point};
+    const Exact exact(view, box);
+    const PixelBox as_box = projectOne(view, box);
+    if (image.x == PointImage::kUnknown) {
+      ++unknown;
+      EXPECT_EQ(image, PointImage{});
+      const bool in_one_pixel =
+          as_box.place == BoxPlace::kOnBuffer && as_box.x0 == as_box.x1 && as_box.y0 == as_box.y1;
+      EXPECT_FALSE(as_box.whole && in_one_pixel) << "seed " << seed;
+      continue;
+    }
+    ++known;
+    ASSERT_EQ(as_box.place, BoxPlace::kOnBuffer) << "seed " << seed;
+    EXPECT_TRUE(exact.z0 > view.near && exact.z0 < view.far) << "seed " << seed;
+    EXPECT_EQ(static_cast<Wide>(image.x), std::floor(exact.x0)) << "seed " << seed;
+    EXPECT_EQ(static_cast<Wide>(image.y), std::floor(exact.y0)) << "seed " << seed;
+    EXPECT_LE(image.farthest, view.orthographic ? -exact.z0 : 1 / exact.z0) << "seed " << seed;
+    EXPECT_EQ(image.farthest, as_box.farthest) << "seed " << seed;
+  }
+  EXPECT_GT(known, 10000);
+  EXPECT_GT(unknown, 10000);
+}
+
+TEST(PixelPoints, OnPixelBordersOrOutsideTheViewAreUnknown) {
+  View view;
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.orthographic = true;
+  view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
+  view.aspect = 320.0 / 180.0;
+  view.far = 100.0;
+  const BoxProjection projection(PixelView(view, kWidth, kHeight), kWidth, kHeight);
+  const auto imageOf = [&](const Vec3f& point) {
+    PointImage image;
+    projectPoints(projection, {&point, 1}, {&image, 1});
+    return image;
+  };
+  EXPECT_EQ(imageOf({3.5f, -2.25f, -6}).x, 163);
+  EXPECT_EQ(imageOf({3.5f, -2.25f, -6}).y, 87);
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const Vec3f& point :
+       {Vec3f(3, 0.5f, -6), Vec3f(0.5f, 3, -6), Vec3f(-160, 0.5f, -6), Vec3f(160.5f, 0.5f, -6),
+        Vec3f(0.5f, 90.5f, -6), Vec3f(0.5f, 0.5f, 6), Vec3f(0.5f, 0.5f, 0), Vec3f(0.5f, 0.5f, -100),
+        Vec3f(0.5f, 0.5f, -101), Vec3f(nan, 0.5f, -6), Vec3f(0.5f, 0.5f, nan), Vec3f(0.5f, -inf, -6)}) {
+    EXPECT_EQ(imageOf(point), PointImage{}) << point.x << " " << point.y << " " << point.z;
+  }
+  PointImage image{.x = 1, .y = 1, .farthest = 1.0f};
+  const Vec3f point{0.5f, 0.5f, -6};
+  projectPoints(BoxProjection(), {&point, 1}, {&image, 1});
+  EXPECT_EQ(image, PointImage{}) << "of no view";
+}
+
+TEST(PixelPoints, EveryInstructionSetAndEverySplitGiveTheSameBits) {
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    ViewRandom random(seed);
+    const View eye_view = randomView(random);
+    const BoxProjection projection(PixelView(eye_view, kWidth, kHeight), kWidth, kHeight);
+    std::vector<Vec3f> points;
+    for (std::uint64_t i = 0; i < 1 + seed % 70; ++i) {
+      points.push_back(randomPoint(random, randomBox(random, eye_view)));
+    }
+    std::vector<PointImage> whole(points.size()), parts(points.size());
+    projectPoints(projection, points, whole);
+    for (const std::int64_t target : targets) {
+      hwy::SetSupportedTargetsForTest(target);
+      std::vector<PointImage> images(points.size());
+      projectPoints(projection, points, images);
+      EXPECT_EQ(images, whole) << hwy::TargetName(target) << ", seed " << seed;
+      hwy::SetSupportedTargetsForTest(0);
+    }
+    const std::size_t cut = random.below(static_cast<std::uint32_t>(points.size()) + 1);
+    projectPoints(projection, std::span(points).first(cut), std::span(parts).first(cut));
+    projectPoints(projection, std::span(points).subspan(cut), std::span(parts).subspan(cut));
+    EXPECT_EQ(parts, whole) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace sightline::occlusion

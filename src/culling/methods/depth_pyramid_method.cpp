@@ -108,6 +108,15 @@ class DepthPyramidMethod final : public CullingMethod {
     }
   }
 
+  // A finer buffer may hide what the first one shows.
+  void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const override {
+    if (focus_ && focus_->windows() > 0) {
+      CullingMethod::seesPoints(points, seen);
+    } else {
+      pyramid_->seesPoints(points, seen);
+    }
+  }
+
   std::span<const OccluderId> occludersUsed() const override {
     return pyramid_->occluders().first(own_occluders_);
   }

@@ -45,6 +45,9 @@ class DetailObjects final : public CullingMethod {
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
     method_->classify(boxes, states);
   }
+  void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const override {
+    method_->seesPoints(points, seen);
+  }
   std::span<const OccluderId> occludersUsed() const override { return method_->occludersUsed(); }
   DepthBufferView depthBuffer() const override { return method_->depthBuffer(); }
   std::span<const MethodStatistic> statistics() const override { return statistics_; }

@@ -84,6 +84,13 @@ class WhileItPays final : public CullingMethod {
       method_->classify(boxes, states);
     }
   }
+  void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const override {
+    if (given_up_) {
+      CullingMethod::seesPoints(points, seen);
+    } else {
+      method_->seesPoints(points, seen);
+    }
+  }
   bool testDetail(culling::DetailTest& test, std::vector<ObjectId>& visible) override {
     return !given_up_ && method_->testDetail(test, visible);
   }
