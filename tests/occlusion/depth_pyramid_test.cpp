@@ -137,7 +137,7 @@ TEST(DepthPyramid, BeforeItIsFinishedNothingOnTheMapIsHidden) {
 TEST(DepthPyramid, SeesPointsThatNothingIsBefore) {
   const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
   const DepthPyramid pyramid = pyramidOf(walls, kLookingBack);
-  const Vec3f points[] = {{0.01f, 0.01f, -4}, {3, 0.01f, -6},    {0.01f, 0.01f, -6},
+  const Vec3f points[] = {{0.01f, 0.01f, -4}, {3.1f, 0.01f, -6},   {0.01f, 0.01f, -6},
                           {0.01f, 0.01f, 4},  {90, 0.01f, -6}, {0.01f, 0.01f, -2e4f}};
   std::uint8_t seen[std::size(points)] = {};
   pyramid.seesPoints(points, seen);
