@@ -35,7 +35,7 @@ bool FocusWindow::place(const View& whole, std::uint32_t width, std::uint32_t he
   view_.ortho_height *= part_y;
   view_.aspect *= part_x / part_y;
   fine_view_ = occlusion::OutlineView(PixelView(view_, fine_width, fine_height));
-  return fine_view_.view.sane();
+  return fine_view_.sane;
 }
 
 void FocusWindow::take(const DepthBufferView& drawn) {

@@ -62,8 +62,8 @@ class WideTraversal {
   // Scratch and results of one task.
   struct Found {
     std::vector<Entry> stack;  // nodes to be visited
-    // Children of the nodes visited so far, to be tested together: against the occluders, or against the view's
-    // volume alone.
+    // Children of the nodes visited so far, to be tested together: against the occluders, or against the
+    // view's volume alone.
     std::vector<Child> nodes, objects, nodes_in_view, objects_in_view;
     // Of the children that are tested in one call, one value each.
     std::vector<Box> boxes;

@@ -174,8 +174,8 @@ struct Refinement {
     const std::uint32_t rows = range.y1 - range.y0 + 1;
     Cells result;
     result.from = readFrom(cells, range);
-    // The functions' values at the lower left corner of a cell, where those over the cell are greatest, and how
-    // much less they may be elsewhere in it.
+    // The functions' values at the lower left corner of a cell, where those over the cell are greatest, and
+    // how much less they may be elsewhere in it.
     float at_corner[BoxOutline::kSlots], across[BoxOutline::kSlots];
     for (std::uint32_t slot = 0; slot < BoxOutline::kSlots; ++slot) {
       const float x = outline.along_x[slot], y = outline.along_y[slot];
@@ -194,9 +194,8 @@ struct Refinement {
       for (std::uint32_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; ++slot) {
         of_column[slot] = hn::Mul(hn::Set(d, outline.along_x[slot]), x_px);
       }
-      const auto at = [&](std::uint32_t slot, std::uint32_t row) HWY_ATTR {
-        return hn::Add(of_column[slot], hn::Set(d, of_row[slot][row]));
-      };
+      const auto at = [&](std::uint32_t slot, std::uint32_t row)
+                          HWY_ATTR { return hn::Add(of_column[slot], hn::Set(d, of_row[slot][row])); };
       const float* from = cells.min + std::size_t{range.y0} * cells.stride + result.from + lane;
       for (std::uint32_t row = 0; row < rows; ++row, from += cells.stride) {
         const auto min = hn::LoadU(d, from);
@@ -242,7 +241,8 @@ struct Refinement {
   }
 
   // Sets `open` to a cell in the middle of those that are marked. False: none is.
-  bool settle(std::uint32_t level, std::uint32_t y0, std::uint32_t from, const std::uint8_t (&marks)[kBlock]) {
+  bool settle(std::uint32_t level, std::uint32_t y0, std::uint32_t from,
+              const std::uint8_t (&marks)[kBlock]) {
     std::uint32_t rows = 0;
     for (std::uint32_t i = 0; i < kBlock; ++i) {
       rows |= (marks[i] != 0 ? 1u : 0u) << i;
@@ -346,9 +346,9 @@ Vec3d farthestFrom(const Vec3d& eye, const Box& box) {
 }
 
 // Whether the outline and the faces of a box can be computed wherever it lies.
-bool hasOutline(const PixelView& view, const Box& box) {
+bool hasOutline(const OutlineView& view, const Box& box) {
   constexpr double kLargest = 0x1p60;  // metres; products stay finite
-  return view.sane() && box.wellFormed() && maxComponent(farthestFrom(view.eye, box)) < kLargest;
+  return view.sane && box.wellFormed() && maxComponent(farthestFrom(view.view.eye, box)) < kLargest;
 }
 
 // Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there is
@@ -368,7 +368,7 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const OutlineView& outli
                     Vec3f* seen_point) {
   const PixelView& view = outline_view.view;
   constexpr std::uint32_t kMaxRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
-  if (!hasOutline(view, box)) {
+  if (!hasOutline(outline_view, box)) {
     return false;
   }
   const DepthLevel &buffer = levels.front(), &top = levels.back();
@@ -457,8 +457,9 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
   }
 }
 
-std::uint32_t openPixelsOf(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
-                           const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
+std::uint32_t openPixelsOf(std::span<const DepthLevel> levels, const OutlineView& outline_view,
+                           const Box& box, const PixelBox& image, std::uint32_t max,
+                           std::vector<BufferPixel>& pixels) {
   if (image.place == BoxPlace::kOutside) {
     return 0;
   }
@@ -493,7 +494,7 @@ void openPixels(std::span<const DepthLevel> levels, const PixelView& view, std::
 
 bool hidesWithin(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                  std::span<const PixelRange> ranges) {
-  if (levels.empty() || !hasOutline(outline_view.view, box)) {
+  if (levels.empty() || !hasOutline(outline_view, box)) {
     return false;
   }
   PixelBox image;                                     // the rectangle around the ranges

@@ -25,9 +25,9 @@ void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::s
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 
 // Appends, box by box, the pixels in which the buffer does not surely hide it, and sets counts[i] to how many
-// they are. It is kManyPixels, and none are appended, where they are more than `max`, where the box reaches the
-// near plane, and without levels. images and counts: one for each box. Every instruction set gives the same
-// pixels in the same order.
+// they are. It is kManyPixels, and none are appended, where they are more than `max`, where the box reaches
+// the near plane, and without levels. images and counts: one for each box. Every instruction set gives the
+// same pixels in the same order.
 void findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                     std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
                     std::vector<BufferPixel>& pixels);

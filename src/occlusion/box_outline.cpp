@@ -9,10 +9,10 @@
 //   Face at l metres from the eye along the axis e:  1 / depth = (e . r) / l. Orthographic:
 //     -depth = (e . (tx right + ty up) - l) / (e . forward).
 //
-// Each is f.x tx + f.y ty + f.z, a sum of three terms, with a few roundings in every one. The coordinates of f
-// are sums of two products: an edge's normal has two coordinates that are not 0, a face has 1 / l alone. Two
-// edges along each axis may belong to the outline. So each function has a slot of its own, the same for all
-// boxes, and a vector has all edges of a box.
+// Each is f.x tx + f.y ty + f.z, a sum of three terms, with a few roundings in every one. The coordinates of
+// f are sums of two products: an edge's normal has two coordinates that are not 0, a face has 1 / l alone.
+// Two edges along each axis may belong to the outline. So each function has a slot of its own, the same for
+// all boxes, and a vector has all edges of a box.
 
 #include "src/occlusion/box_outline.h"
 
@@ -20,6 +20,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "src/geometry/box_tangents.h"
@@ -38,9 +39,9 @@ namespace sightline::occlusion {
 struct OutlineFactors {
   static constexpr std::uint32_t kSlots = BoxOutline::kSlots;
 
-  alignas(64) double p[kSlots] = {}, q[kSlots] = {};  // of first and second; 0 in empty slots
-  // Orthographic views alone: the third coordinate has factors of its own, and this bounds the sum of the terms
-  // in each of the three.
+  alignas(64) double p[kSlots], q[kSlots];  // of first and second; 0 in empty slots
+  // Orthographic views alone: the third coordinate has factors of its own, and this bounds the sum of the
+  // terms in each of the three.
   alignas(64) double third_p[kSlots], third_q[kSlots], size[kSlots];
   double tx = 0.0, ty = 0.0;  // at the origin of the functions
   double reach = 0.0;         // pixels from there
@@ -92,9 +93,8 @@ void multiplyOut(const OutlineView& view, const OutlineFactors& factors, BoxOutl
     // The smallest numbers of single precision are coarse; they are far below any of a scene.
     const auto raised = hn::Add(hn::Add(at_origin, rounding), hn::Set(d, 0x1p-120));
     const auto nothing = hn::Set(d, faces ? double{std::numeric_limits<float>::max()} : 1.0);
-    const auto store = [&](auto value, float* to) HWY_ATTR {
-      hn::Store(hn::DemoteTo(df, value), df, to + slot);
-    };
+    const auto store = [&](auto value, float* to)
+                           HWY_ATTR { hn::Store(hn::DemoteTo(df, value), df, to + slot); };
     store(hn::IfThenElseZero(says, along_x), outline.along_x);
     store(hn::IfThenElseZero(says, along_y), outline.along_y);
     store(hn::IfThenElse(says, raised, nothing), outline.at_origin);
@@ -111,13 +111,6 @@ namespace {
 
 HWY_EXPORT(multiplyOut);
 
-// An edge of the outline: its corner, and the sign of its function.
-struct OutlineEdge {
-  geometry::BoxCorner corner = 0;
-  double sign = 0.0;  // 0: the slot is empty
-};
-using OutlineEdges = std::array<OutlineEdge, BoxOutline::kEdges>;
-
 // The axes across the edge of a slot, in ascending order.
 constexpr int firstAxis(std::uint32_t slot) {
   return slot / 2 == 0 ? 1 : 0;
@@ -125,6 +118,19 @@ constexpr int firstAxis(std::uint32_t slot) {
 constexpr int secondAxis(std::uint32_t slot) {
   return slot / 2 == 2 ? 1 : 2;
 }
+
+// A box relative to the eye: its minimal x, y, z, then its maximal ones.
+using Bounds = std::array<double, 6>;
+
+// An edge of the outline.
+struct OutlineEdge {
+  // A corner of it, in Bounds: its coordinates along the axes across the edge, and along the edge.
+  std::uint8_t first = 0, second = 0, along = 0;
+  // The normal v x e has v[second] along the first axis and -v[first] along the second one, or both the other
+  // way round. 0: the slot is empty.
+  double sign = 0.0;
+};
+using OutlineEdges = std::array<OutlineEdge, BoxOutline::kEdges>;
 
 // The outlines of boxes that the eye sees from each of the regions, by slot.
 std::array<OutlineEdges, geometry::kRegions> edgesOfRegions() {
@@ -134,9 +140,13 @@ std::array<OutlineEdges, geometry::kRegions> edgesOfRegions() {
     for (int i = 0; i < loop.count; ++i) {
       const auto from = loop.corners[static_cast<std::size_t>(i)];
       const auto to = loop.corners[static_cast<std::size_t>(i + 1 < loop.count ? i + 1 : 0)];
-      const auto axis = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(from ^ to)));
+      const auto axis = static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(from ^ to)));
       OutlineEdges& edges = table[static_cast<std::size_t>(region)];
-      edges[edges[2 * axis].sign == 0.0 ? 2 * axis : 2 * axis + 1] = {from, to > from ? 1.0 : -1.0};
+      const std::uint32_t slot = edges[2 * axis].sign == 0.0 ? 2 * axis : 2 * axis + 1;
+      const auto inBounds = [&](int of) { return static_cast<std::uint8_t>(of + 3 * (from >> of & 1)); };
+      const double turned = axis == 1 ? -1.0 : 1.0;
+      edges[slot] = {inBounds(firstAxis(slot)), inBounds(secondAxis(slot)), inBounds(static_cast<int>(axis)),
+                     to > from ? turned : -turned};
     }
   }
   return table;
@@ -154,23 +164,23 @@ int regionOfEye(const PixelView& view, const EyeBox& box) {
 void setEdges(const PixelView& view, const EyeBox& box, int region, OutlineFactors& factors) {
   static const std::array<OutlineEdges, geometry::kRegions> kEdges = edgesOfRegions();
   const OutlineEdges& edges = kEdges[static_cast<std::size_t>(region)];
+  const Bounds bounds{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
   for (std::uint32_t slot = 0; slot < BoxOutline::kEdges; ++slot) {
-    const auto [at, sign] = edges[slot];
-    const int first = firstAxis(slot), second = secondAxis(slot);
-    const Vec3d corner = geometry::cornerOf(box.min, box.max, at);
-    const Vec3d& v = view.orthographic ? view.unit_z : corner;
-    // The normal v x e has v[second] along the first axis and -v[first] along the second one; with e between
-    // them the other way round.
-    const double turned = slot / 2 == 1 ? -sign : sign;
-    factors.p[slot] = v[second] * turned;
-    factors.q[slot] = -v[first] * turned;
-    if (view.orthographic) {
-      factors.third_p[slot] = -corner[first];
-      factors.third_q[slot] = -corner[second];
-      // The axes are as good as unit vectors. What they are off by counts by the distance from the eye, however
-      // short the normal is.
-      factors.size[slot] = 2.0 * (1.0 + l1Norm(corner));
+    const OutlineEdge& edge = edges[slot];
+    if (!view.orthographic) {
+      factors.p[slot] = bounds[edge.second] * edge.sign;
+      factors.q[slot] = -bounds[edge.first] * edge.sign;
+      continue;
     }
+    factors.p[slot] = view.unit_z[secondAxis(slot)] * edge.sign;
+    factors.q[slot] = -view.unit_z[firstAxis(slot)] * edge.sign;
+    factors.third_p[slot] = -bounds[edge.first];
+    factors.third_q[slot] = -bounds[edge.second];
+    // The axes are as good as unit vectors. What they are off by counts by the distance from the eye, however
+    // short the normal is.
+    const double distance =
+        std::abs(bounds[edge.first]) + std::abs(bounds[edge.second]) + std::abs(bounds[edge.along]);
+    factors.size[slot] = 2.0 * (1.0 + distance);
   }
 }
 
@@ -192,7 +202,10 @@ void setFaces(const PixelView& view, const EyeBox& box, int region, OutlineFacto
 }  // namespace
 
 OutlineView::OutlineView(const PixelView& pixel_view)
-    : view(pixel_view), per_x(1.0 / pixel_view.scale_x), per_y(1.0 / pixel_view.scale_y) {
+    : view(pixel_view),
+      sane(pixel_view.sane()),
+      per_x(1.0 / pixel_view.scale_x),
+      per_y(1.0 / pixel_view.scale_y) {
   const Vec3d* axes[3] = {&view.unit_x, &view.unit_y, &view.unit_z};
   for (int c = 0; c < 3; ++c) {
     for (std::uint32_t slot = 0; slot < BoxOutline::kEdges; ++slot) {
@@ -205,13 +218,17 @@ OutlineView::OutlineView(const PixelView& pixel_view)
   }
 }
 
-BoxOutline outlineOf(const OutlineView& view, const Box& box, std::uint32_t x, std::uint32_t y, double reach) {
+BoxOutline outlineOf(const OutlineView& view, const Box& box, std::uint32_t x, std::uint32_t y,
+                     double reach) {
   const EyeBox eye_box = EyeBox::of(box, view.view.eye);
   OutlineFactors factors;
   factors.tx = (x - view.view.middle_x) * view.per_x;
   factors.ty = (y - view.view.middle_y) * view.per_y;
   factors.reach = reach;
   factors.extent = std::abs(factors.tx) + std::abs(factors.ty) + (view.per_x + view.per_y) * reach + 1.0;
+  // Slots without an edge or a face.
+  std::fill(factors.p + BoxOutline::kEdges, std::end(factors.p), 0.0);
+  std::fill(factors.q + BoxOutline::kEdges, std::end(factors.q), 0.0);
   if (view.view.orthographic) {
     for (double* list : {factors.third_p, factors.third_q, factors.size}) {
       std::fill_n(list, OutlineFactors::kSlots, 0.0);

@@ -15,19 +15,20 @@ struct OutlineView {
   explicit OutlineView(const PixelView& pixel_view);
 
   PixelView view;
+  bool sane = false;                // see PixelView::sane()
   double per_x = 0.0, per_y = 0.0;  // change of tx and ty for a pixel, see box_outline.cpp
   // By coordinate of a function and by its slot: what it has of the slot's two factors.
   alignas(64) double first[3][16] = {}, second[3][16] = {};
 };
 
-// Functions of the pixels x, y from a place of the buffer: along_x x + along_y y + at_origin, rounded up. Each
-// has a slot.
+// Functions of the pixels x, y from a place of the buffer: along_x x + along_y y + at_origin, rounded up.
+// Each has a slot.
 struct BoxOutline {
-  // Slots of the edges: each function is >= 0 within the convex hull of the box's image: the plane through the
-  // eye and an edge between a face that is seen and one that is not.
+  // Slots of the edges: each function is >= 0 within the convex hull of the box's image: the plane through
+  // the eye and an edge between a face that is seen and one that is not.
   static constexpr std::uint32_t kEdges = 6;
-  // Slots of the faces that are seen: where a ray intersects the box, no point of it before the eye has a greater
-  // reciprocal depth than the least of their functions.
+  // Slots of the faces that are seen: where a ray intersects the box, no point of it before the eye has a
+  // greater reciprocal depth than the least of their functions.
   static constexpr std::uint32_t kFirstFace = 8, kFaces = 3;
   static constexpr std::uint32_t kSlots = 16;
 

@@ -290,9 +290,8 @@ HWY_INLINE void projectPoints(Lanes d, const BoxProjection& p, const float* floa
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   Vec x, y, z;
   hn::LoadInterleaved3(d, floats, x, y, z);
-  const auto toEye = [&](Vec at, float high, float low) HWY_ATTR {
-    return hn::Sub(hn::Sub(at, hn::Set(d, high)), hn::Set(d, low));
-  };
+  const auto toEye = [&](Vec at, float high, float low)
+                         HWY_ATTR { return hn::Sub(hn::Sub(at, hn::Set(d, high)), hn::Set(d, low)); };
   x = toEye(x, p.eye_high.x, p.eye_low.x);
   y = toEye(y, p.eye_high.y, p.eye_low.y);
   z = toEye(z, p.eye_high.z, p.eye_low.z);

@@ -131,7 +131,8 @@ class Pointing final : public CullingMethod {
     asked += boxes.size();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       ASSERT_NE(boxes[i].seen_point, nullptr);
-      EXPECT_TRUE(contains(boxes[i].box, Box{*boxes[i].seen_point, *boxes[i].seen_point})) << "the point of another box";
+      EXPECT_TRUE(contains(boxes[i].box, Box{*boxes[i].seen_point, *boxes[i].seen_point}))
+          << "the point of another box";
       states[i] = boxes[i].box.min.x > hidden_to ? Visibility::kPartial : Visibility::kHidden;
       if (states[i] == Visibility::kPartial) {
         *boxes[i].seen_point = boxes[i].box.max;

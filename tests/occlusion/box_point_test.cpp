@@ -98,12 +98,13 @@ TEST(PointInPixel, IsTheNearestOfTheBoxOnTheRay) {
       const double depth = at.depth * (i + 0.5) / 21.0;
       const Vec3d across = bed.view.unit_x * ((bed.pixel.x + 0.5 - bed.view.middle_x) / bed.view.scale_x) +
                            bed.view.unit_y * ((bed.pixel.y + 0.5 - bed.view.middle_y) / bed.view.scale_y);
-      const Vec3d on_ray = bed.view.eye + (bed.view.orthographic ? across : across * depth) +
-                           bed.view.unit_z * depth;
+      const Vec3d on_ray =
+          bed.view.eye + (bed.view.orthographic ? across : across * depth) + bed.view.unit_z * depth;
       bool inside = depth > bed.view.near;
       for (int axis = 0; axis < 3; ++axis) {
         const double margin = bed.rounding() + 1e-3 * pixel_size;
-        inside = inside && on_ray[axis] > bed.box.min[axis] + margin && on_ray[axis] < bed.box.max[axis] - margin;
+        inside =
+            inside && on_ray[axis] > bed.box.min[axis] + margin && on_ray[axis] < bed.box.max[axis] - margin;
       }
       EXPECT_FALSE(inside) << "seed " << seed;
     }

@@ -137,8 +137,8 @@ TEST(DepthPyramid, BeforeItIsFinishedNothingOnTheMapIsHidden) {
 TEST(DepthPyramid, SeesPointsThatNothingIsBefore) {
   const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
   const DepthPyramid pyramid = pyramidOf(walls, kLookingBack);
-  const Vec3f points[] = {{0.01f, 0.01f, -4}, {3.1f, 0.01f, -6},   {0.01f, 0.01f, -6},
-                          {0.01f, 0.01f, 4},  {90, 0.01f, -6}, {0.01f, 0.01f, -2e4f}};
+  const Vec3f points[] = {{0.01f, 0.01f, -4}, {3.1f, 0.01f, -6}, {0.01f, 0.01f, -6},
+                          {0.01f, 0.01f, 4},  {90, 0.01f, -6},   {0.01f, 0.01f, -2e4f}};
   std::uint8_t seen[std::size(points)] = {};
   pyramid.seesPoints(points, seen);
   EXPECT_EQ(seen[0], 1) << "before the wall";
@@ -169,7 +169,8 @@ TEST(DepthPyramid, ABoxIsNotHiddenWhereAPointOfItIsSeen) {
         Vec3f point;
         for (int axis = 0; axis < 3; ++axis) {
           const double t = scene.random.in(0.0, 1.0);
-          point[axis] = static_cast<float>(box.min[axis] + t * (static_cast<double>(box.max[axis]) - box.min[axis]));
+          point[axis] =
+              static_cast<float>(box.min[axis] + t * (static_cast<double>(box.max[axis]) - box.min[axis]));
         }
         points.push_back(max(box.min, min(point, box.max)));
       }

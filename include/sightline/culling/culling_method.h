@@ -167,8 +167,8 @@ class CullingMethod {
   virtual bool testDetail(culling::DetailTest&, std::vector<ObjectId>&) { return false; }
   // States of boxes in the frustum, one for each: of boxes that move, and of several boxes an object.
   virtual void classify(std::span<const MovingBox> boxes, std::span<Visibility> states);
-  // Sets seen[i] to 1 where points[i] is surely seen, so that classify() would hide no box that contains it; to 0
-  // where that is not known. seen: as many as points.
+  // Sets seen[i] to 1 where points[i] is surely seen, so that classify() would hide no box that contains it;
+  // to 0 where that is not known. seen: as many as points.
   virtual void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const;
   // The frame ends: completes stats and the method's own statistics. stats has the frame's times, but for
   // classify().

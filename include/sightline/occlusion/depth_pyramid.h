@@ -45,8 +45,8 @@ struct BoxHints {
   std::span<const std::uint8_t> seen{};
   // For boxes from this index on, kVisible and kPartial need not be told apart.
   std::size_t plain_from = static_cast<std::size_t>(-1);
-  // Empty, or one value for each box. Other than 0: the box is surely not hidden, as DepthPyramid::seesPoints()
-  // tells, so that only kVisible and kPartial have to be told apart.
+  // Empty, or one value for each box. Other than 0: the box is surely not hidden, as
+  // DepthPyramid::seesPoints() tells, so that only kVisible and kPartial have to be told apart.
   std::span<const std::uint8_t> not_hidden{};
   // Empty, or a point for each box. Where a box is found not to be hidden, this mostly becomes a point of it
   // that seesPoints() sees, also in the views that follow; else it stays as it is.

@@ -132,8 +132,8 @@ class DepthPyramidMethod final : public CullingMethod {
   std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
   double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
-  // Scratch for one classify() call: all boxes, the points at which they were last seen and whether they still
-  // are, and their answers.
+  // Scratch for one classify() call: all boxes, the points at which they were last seen and whether they
+  // still are, and their answers.
   std::vector<Box> asked_;
   std::vector<Vec3f> seen_points_;
   std::vector<std::uint8_t> seen_;
