@@ -182,16 +182,16 @@ struct Refinement {
       at_corner[slot] = outline.at_origin[slot] + (std::max(x, 0.0f) + std::max(y, 0.0f)) * size;
       across[slot] = (std::abs(x) + std::abs(y)) * size;
     }
-    float of_row[BoxOutline::kFirstFace + BoxOutline::kFaces][kBlock];
-    for (std::uint32_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; ++slot) {
+    float of_row[BoxOutline::kSlots][kBlock];
+    for (std::uint32_t slot = 0; slot < BoxOutline::kSlots; ++slot) {
       for (std::uint32_t i = 0; i < kBlock; ++i) {
         of_row[slot][i] = outline.along_y[slot] * y_px[i] + at_corner[slot];
       }
     }
     forLanes(range, result.from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
-      hn::Vec<Lanes> of_column[BoxOutline::kFirstFace + BoxOutline::kFaces];
-      for (std::uint32_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; ++slot) {
+      hn::Vec<Lanes> of_column[BoxOutline::kSlots];
+      for (std::uint32_t slot = 0; slot < BoxOutline::kSlots; ++slot) {
         of_column[slot] = hn::Mul(hn::Set(d, outline.along_x[slot]), x_px);
       }
       const auto at = [&](std::uint32_t slot, std::uint32_t row)

@@ -37,7 +37,7 @@ namespace sightline::occlusion {
 
 // The functions of one box before they are multiplied out.
 struct OutlineFactors {
-  static constexpr std::uint32_t kSlots = BoxOutline::kSlots;
+  static constexpr std::uint32_t kSlots = BoxOutline::kStored;
 
   alignas(64) double p[kSlots], q[kSlots];  // of first and second; 0 in empty slots
   // Orthographic views alone: the third coordinate has factors of its own, and this bounds the sum of the
@@ -65,7 +65,7 @@ void multiplyOut(const OutlineView& view, const OutlineFactors& factors, BoxOutl
   const hn::Rebind<float, decltype(d)> df;
   const bool orthographic = view.view.orthographic;
   outline.has_faces = false;
-  for (std::size_t slot = 0; slot < BoxOutline::kFirstFace + BoxOutline::kFaces; slot += hn::Lanes(d)) {
+  for (std::size_t slot = 0; slot < BoxOutline::kSlots; slot += hn::Lanes(d)) {
     const bool faces = slot >= BoxOutline::kFirstFace;
     const auto p = hn::Load(d, factors.p + slot), q = hn::Load(d, factors.q + slot);
     const auto sum = [&](const double* first, const double* second) HWY_ATTR {

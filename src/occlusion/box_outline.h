@@ -30,11 +30,13 @@ struct BoxOutline {
   // Slots of the faces that are seen: where a ray intersects the box, no point of it before the eye has a
   // greater reciprocal depth than the least of their functions.
   static constexpr std::uint32_t kFirstFace = 8, kFaces = 3;
-  static constexpr std::uint32_t kSlots = 16;
+  static constexpr std::uint32_t kSlots = kFirstFace + kFaces;
+  // What is written beyond them, so that vectors are whole, has no meaning.
+  static constexpr std::uint32_t kStored = 16;
 
   // A slot without an edge or a face, or whose function would be too large, has one that says nothing: it is
   // everywhere greater than 0, or as great as can be.
-  alignas(64) float along_x[kSlots], along_y[kSlots], at_origin[kSlots];
+  alignas(64) float along_x[kStored], along_y[kStored], at_origin[kStored];
   bool has_faces = false;  // the function of some face says something
 };
 

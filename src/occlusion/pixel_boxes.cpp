@@ -34,9 +34,11 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes = hn::CappedTag<float, 16>;
-using Vec = hn::Vec<Lanes>;
-using Mask = hn::Mask<Lanes>;
+// Boxes are projected by as many lanes as a vector has, and few of them by fewer: on some machines wide
+// vectors take twice as long. D is the vectors' tag.
+constexpr std::size_t kMaxLanes = 16, kFewLanes = 8;
+using Many = hn::CappedTag<float, kMaxLanes>;
+using Few = hn::CappedTag<float, kFewLanes>;
 
 constexpr float kRounding = 0x1.4p-21f;      // of a coordinate in camera space, times S
 constexpr float kBufferRounding = 0x1p-21f;  // of a position in the buffer, relative
@@ -46,7 +48,10 @@ constexpr float kLargest = 0x1p60f;          // S of boxes that are projected
 constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
 
 // One box a lane, relative to the eye: [0] its minimum, [1] its maximum coordinate.
+template <class D>
 struct EyeBoxes {
+  using Vec = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
   Vec x[2], y[2], z[2];
   Vec reach;  // S
   Vec error;  // E
@@ -54,17 +59,20 @@ struct EyeBoxes {
 };
 
 // Minima and maxima of one coordinate.
+template <class D>
 struct Range {
+  using Vec = hn::Vec<D>;
   Vec min, max;
 };
 
-HWY_INLINE void loadRanges(Lanes d, const float* floats, Range& x, Range& y, Range& z) {
+template <class D>
+HWY_INLINE void loadRanges(D d, const float* floats, Range<D>& x, Range<D>& y, Range<D>& z) {
 #if HWY_TARGET == HWY_SCALAR
   x = {hn::Set(d, floats[0]), hn::Set(d, floats[3])};
   y = {hn::Set(d, floats[1]), hn::Set(d, floats[4])};
   z = {hn::Set(d, floats[2]), hn::Set(d, floats[5])};
 #else
-  Vec x_a, y_a, z_a, x_b, y_b, z_b;
+  hn::Vec<D> x_a, y_a, z_a, x_b, y_b, z_b;
   hn::LoadInterleaved3(d, floats, x_a, y_a, z_a);
   hn::LoadInterleaved3(d, floats + 3 * hn::Lanes(d), x_b, y_b, z_b);
   x = {hn::ConcatEven(d, x_b, x_a), hn::ConcatOdd(d, x_b, x_a)};
@@ -73,15 +81,18 @@ HWY_INLINE void loadRanges(Lanes d, const float* floats, Range& x, Range& y, Ran
 #endif
 }
 
-HWY_INLINE EyeBoxes load(Lanes d, const BoxProjection& p, const float* floats) {
-  Range x, y, z;
+template <class D>
+HWY_INLINE EyeBoxes<D> load(D d, const BoxProjection& p, const float* floats) {
+  using Vec = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  Range<D> x, y, z;
   loadRanges(d, floats, x, y, z);
-  const auto toEye = [&](const Range& r, float high, float low, Vec out[2]) HWY_ATTR {
+  const auto toEye = [&](const Range<D>& r, float high, float low, Vec out[2]) HWY_ATTR {
     out[0] = hn::Sub(hn::Sub(r.min, hn::Set(d, high)), hn::Set(d, low));
     out[1] = hn::Sub(hn::Sub(r.max, hn::Set(d, high)), hn::Set(d, low));
     return hn::Le(r.min, r.max);
   };
-  EyeBoxes boxes;
+  EyeBoxes<D> boxes;
   const Mask x_good = toEye(x, p.eye_high.x, p.eye_low.x, boxes.x);
   const Mask y_good = toEye(y, p.eye_high.y, p.eye_low.y, boxes.y);
   const Mask z_good = toEye(z, p.eye_high.z, p.eye_low.z, boxes.z);
@@ -93,10 +104,12 @@ HWY_INLINE EyeBoxes load(Lanes d, const BoxProjection& p, const float* floats) {
 }
 
 // One coordinate of the eight corners along an axis.
+template <class D>
 struct Corners {
+  using Vec = hn::Vec<D>;
   Vec xy[4], z[2];
 
-  HWY_INLINE Corners(Lanes d, const EyeBoxes& b, const BoxProjection::Axis& axis) {
+  HWY_INLINE Corners(D d, const EyeBoxes<D>& b, const BoxProjection::Axis& axis) {
     const Vec ax = hn::Set(d, axis.x), ay = hn::Set(d, axis.y), az = hn::Set(d, axis.z);
     const Vec x0 = hn::Mul(ax, b.x[0]), x1 = hn::Mul(ax, b.x[1]);
     const Vec y0 = hn::Mul(ay, b.y[0]), y1 = hn::Mul(ay, b.y[1]);
@@ -117,17 +130,22 @@ struct Corners {
 };
 
 // Bounds of q, the position divided by the depth (orthographic: the position), before rounding.
+template <class D>
 struct Extent {
+  using Vec = hn::Vec<D>;
   Vec x0, x1, y0, y1;
 };
 
-HWY_INLINE Extent extentOf(Lanes d, const Corners& x, const Corners& y, const Corners& z, bool orthographic) {
+template <class D>
+HWY_INLINE Extent<D> extentOf(D d, const Corners<D>& x, const Corners<D>& y, const Corners<D>& z,
+                              bool orthographic) {
   if (orthographic) {
     return {x.min(), x.max(), y.min(), y.max()};
   }
+  using Vec = hn::Vec<D>;
   const Vec one = hn::Set(d, 1.0f);
   Vec inverse = hn::Div(one, z.at(0));
-  Extent e;
+  Extent<D> e;
   e.x0 = e.x1 = hn::Mul(x.at(0), inverse);
   e.y0 = e.y1 = hn::Mul(y.at(0), inverse);
   for (std::size_t corner = 1; corner < 8; ++corner) {
@@ -143,7 +161,8 @@ HWY_INLINE Extent extentOf(Lanes d, const Corners& x, const Corners& y, const Co
 
 // Returns a bound of the error of a position in the buffer, pixels. q_error: the error of q for |q| = 0; in
 // perspective it grows with 1 + |q|.
-HWY_INLINE Vec bufferSlack(Lanes d, Vec q, Vec q_error, float scale, float middle, bool orthographic) {
+template <class D, class Vec = hn::Vec<D>>
+HWY_INLINE Vec bufferSlack(D d, Vec q, Vec q_error, float scale, float middle, bool orthographic) {
   const Vec size = hn::Abs(q), rounding = hn::Set(d, kBufferRounding);
   const Vec grown = orthographic ? q_error : hn::Mul(q_error, hn::Add(hn::Set(d, 1.0f), size));
   const Vec in_q = hn::Add(grown, hn::Mul(rounding, size));
@@ -152,28 +171,32 @@ HWY_INLINE Vec bufferSlack(Lanes d, Vec q, Vec q_error, float scale, float middl
 
 // Whether the box is surely beyond a side of the view's volume. The functions are linear: nothing is divided
 // by a depth.
-HWY_INLINE Mask beyondASide(Lanes d, const EyeBoxes& boxes, const BoxProjection& p) {
+template <class D>
+HWY_INLINE hn::Mask<D> beyondASide(D d, const EyeBoxes<D>& boxes, const BoxProjection& p) {
+  using Vec = hn::Vec<D>;
   const Vec error = hn::Mul(boxes.error, hn::Set(d, p.side_size));
-  Mask beyond = hn::Lt(hn::Zero(d), hn::Zero(d));
+  hn::Mask<D> beyond = hn::Lt(hn::Zero(d), hn::Zero(d));
   for (const BoxProjection::Axis& side : p.sides) {
-    const Vec max = Corners(d, boxes, side).max();
+    const Vec max = Corners<D>(d, boxes, side).max();
     beyond = hn::Or(beyond, hn::Lt(hn::Add(max, error), hn::Zero(d)));
   }
   return beyond;
 }
 
 struct Images {
-  HWY_ALIGN std::int32_t place[16], x0[16], y0[16], x1[16], y1[16];
-  HWY_ALIGN float nearest[16], farthest[16];
+  HWY_ALIGN std::int32_t place[kMaxLanes], x0[kMaxLanes], y0[kMaxLanes], x1[kMaxLanes], y1[kMaxLanes];
+  HWY_ALIGN float nearest[kMaxLanes], farthest[kMaxLanes];
 };
 
 constexpr std::int32_t kWholeBit = 256;
 
-template <bool orthographic>
-HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Images& out) {
-  const hn::RebindToSigned<Lanes> di;
-  const EyeBoxes boxes = load(d, p, floats);
-  const Corners x(d, boxes, p.right), y(d, boxes, p.up), z(d, boxes, p.forward);
+template <bool orthographic, class D>
+HWY_INLINE void project(D d, const BoxProjection& p, const float* floats, Images& out) {
+  using Vec = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  const hn::RebindToSigned<D> di;
+  const EyeBoxes<D> boxes = load(d, p, floats);
+  const Corners<D> x(d, boxes, p.right), y(d, boxes, p.up), z(d, boxes, p.forward);
   const Vec z_min = hn::Sub(z.min(), boxes.error), z_max = hn::Add(z.max(), boxes.error);
 
   Mask bounded = hn::And(boxes.usable, hn::Gt(z_min, hn::Set(d, p.near_max)));
@@ -183,7 +206,7 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
     q_error =
         hn::Add(hn::Mul(hn::Div(boxes.error, z_min), hn::Set(d, kSlackGrowth)), hn::Set(d, kBufferRounding));
   }
-  const Extent q = extentOf(d, x, y, z, orthographic);
+  const Extent<D> q = extentOf(d, x, y, z, orthographic);
   const auto toBuffer = [&](Vec at, float scale, float middle, bool upwards) HWY_ATTR {
     const Vec position = hn::Add(hn::Mul(at, hn::Set(d, scale)), hn::Set(d, middle));
     const Vec slack = bufferSlack(d, at, q_error, scale, middle, orthographic);
@@ -243,26 +266,34 @@ HWY_INLINE void store(const Images& from, std::size_t count, PixelBox* to) {
   }
 }
 
-// Calls use(floats of as many items as there are lanes, the first item, the number of items) for all items of
-// kFloats floats each. Where they are fewer than the lanes, those that are left are zeros; else the last call
-// repeats some items.
-template <std::size_t kFloats, typename Use>
-HWY_INLINE void forGroups(Lanes d, const float* floats, std::size_t count, Use&& use) {
+// Calls use(tag, floats of as many items as it has lanes, the first item, the number of items) for all items
+// of kFloats floats each. Where they are fewer than the lanes, those that are left are zeros; else the last
+// call repeats some items.
+template <std::size_t kFloats, class D, typename Use>
+HWY_INLINE void forGroupsOf(D d, const float* floats, std::size_t count, const Use& use) {
   const std::size_t lanes = hn::Lanes(d);
   if (count < lanes) {
-    HWY_ALIGN float few[kFloats * 16];
+    HWY_ALIGN float few[kFloats * kMaxLanes];
     for (std::size_t i = 0; i < kFloats; ++i) {
       hn::Store(hn::Zero(d), d, few + i * lanes);
     }
     for (std::size_t i = 0; i < count; ++i) {
       std::memcpy(few + i * kFloats, floats + i * kFloats, kFloats * sizeof(float));
     }
-    use(few, std::size_t{0}, count);
+    use(d, few, std::size_t{0}, count);
     return;
   }
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t from = std::min(first, count - lanes);
-    use(floats + from * kFloats, from, lanes);
+    use(d, floats + from * kFloats, from, lanes);
+  }
+}
+template <std::size_t kFloats, typename Use>
+HWY_INLINE void forGroups(const float* floats, std::size_t count, const Use& use) {
+  if (count <= kFewLanes) {
+    forGroupsOf<kFloats>(Few(), floats, count, use);
+  } else {
+    forGroupsOf<kFloats>(Many(), floats, count, use);
   }
 }
 
@@ -271,10 +302,9 @@ void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<Pi
   if (boxes.empty()) {
     return;
   }
-  const Lanes d;
   Images out;
-  forGroups<6>(d, &boxes.front().min.x, boxes.size(),
-               [&](const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
+  forGroups<6>(&boxes.front().min.x, boxes.size(),
+               [&](auto d, const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
                  if (p.orthographic) {
                    project<true>(d, p, floats, out);
                  } else {
@@ -284,9 +314,11 @@ void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<Pi
                });
 }
 
-template <bool orthographic>
-HWY_INLINE void projectPoints(Lanes d, const BoxProjection& p, const float* floats, PointImage* out) {
-  const hn::RebindToSigned<Lanes> di;
+template <bool orthographic, class D>
+HWY_INLINE void projectPoints(D d, const BoxProjection& p, const float* floats, PointImage* out) {
+  using Vec = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  const hn::RebindToSigned<D> di;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   Vec x, y, z;
   hn::LoadInterleaved3(d, floats, x, y, z);
@@ -327,8 +359,8 @@ HWY_INLINE void projectPoints(Lanes d, const BoxProjection& p, const float* floa
   const auto mask = hn::RebindMask(di, known);
   const auto unknown = hn::Set(di, PointImage::kUnknown);
   const Vec farthest = orthographic ? hn::Neg(z_max) : hn::Mul(hn::Div(one, z_max), hn::Set(d, kDown));
-  HWY_ALIGN std::int32_t columns[16], rows[16];
-  HWY_ALIGN float depths[16];
+  HWY_ALIGN std::int32_t columns[kMaxLanes], rows[kMaxLanes];
+  HWY_ALIGN float depths[kMaxLanes];
   hn::Store(hn::IfThenElse(mask, column, unknown), di, columns);
   hn::Store(hn::IfThenElse(mask, row, unknown), di, rows);
   hn::Store(hn::IfThenElseZero(known, farthest), d, depths);
@@ -342,10 +374,9 @@ void projectAllPoints(const BoxProjection& p, std::span<const Vec3f> points, std
   if (points.empty()) {
     return;
   }
-  const Lanes d;
-  PointImage out[16];
-  forGroups<3>(d, &points.front().x, points.size(),
-               [&](const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
+  PointImage out[kMaxLanes];
+  forGroups<3>(&points.front().x, points.size(),
+               [&](auto d, const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
                  if (p.orthographic) {
                    projectPoints<true>(d, p, floats, out);
                  } else {
