@@ -4,7 +4,6 @@
 
 namespace sightline::culling {
 
-using hierarchy::kWideChildren;
 using hierarchy::WideNode;
 
 namespace {

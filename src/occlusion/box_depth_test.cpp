@@ -304,7 +304,7 @@ struct Refinement {
 
 // The cells of the finest level on which the image has at most eight cells along each side.
 HWY_INLINE CellRange finestRange(const PixelBox& image, std::uint32_t& level) {
-  const auto isTooFine = [&](std::uint32_t at) {
+  const auto isTooFine = [&](std::uint32_t at) HWY_ATTR {
     const CellRange cells = cellsOf(image, at);
     return cells.x1 - cells.x0 >= kBlock || cells.y1 - cells.y0 >= kBlock ? 1u : 0u;
   };

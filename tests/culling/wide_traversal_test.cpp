@@ -161,6 +161,38 @@ TEST(WideTraversal, KeepsInEachViewOfAWalkWhatItKeepsInThatViewAlone) {
   EXPECT_GT(changed, 100u);
 }
 
+// Cuts ranges into pieces and goes through them backwards.
+void forPiecesBackwards(std::uint32_t count, const RangeBody& body) {
+  for (std::uint32_t end = count; end > 0;) {
+    const std::uint32_t begin = end > 3 ? end - 3 : 0;
+    body(begin, end);
+    end = begin;
+  }
+}
+
+TEST(WideTraversal, ThreadsChangeNoAnswerAndNoCount) {
+  std::size_t kept = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    // Enough objects for more nodes than the first levels have.
+    const Bed bed(test::kFamilies[0], seed, 6000);
+    const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+    for (const bool temporal_coherence : {false, true}) {
+      const TraversalOptions options{.temporal_coherence = temporal_coherence};
+      WideTraversal traversal(bvh, bed.boxes), cut(bvh, bed.boxes);
+      for (int view = 0; view < 3; ++view) {
+        const Answer answer = traversed(traversal, bed.pyramid, options);
+        Answer in_ranges;
+        cut.run(bed.pyramid, options, in_ranges.stats, in_ranges.kept, forPiecesBackwards);
+        EXPECT_EQ(in_ranges.kept, answer.kept) << "seed " << seed;
+        EXPECT_EQ(in_ranges.stats.nodes_tested, answer.stats.nodes_tested) << "seed " << seed;
+        EXPECT_EQ(in_ranges.stats.objects_tested, answer.stats.objects_tested) << "seed " << seed;
+        kept += answer.kept.size();
+      }
+    }
+  }
+  EXPECT_GT(kept, 1000u);
+}
+
 // Objects that were kept are not tested again for a few views: they are kept while they are in the view.
 TEST(WideTraversal, CoherenceKeepsALittleMoreForAWhile) {
   std::size_t lingering = 0;
