@@ -203,22 +203,22 @@ struct Refinement {
         for (std::uint32_t i = 0; i < BoxOutline::kFaces; ++i) {
           own = hn::Min(own, at(BoxOutline::kFirstFace + i, row));
         }
-        auto open = hn::And(in_range, hn::Le(min, own));
-        if (hn::AllFalse(d, open)) {
+        auto unhidden = hn::And(in_range, hn::Le(min, own));
+        if (hn::AllFalse(d, unhidden)) {
           continue;
         }
         for (std::uint32_t i = 0; i < BoxOutline::kEdges; ++i) {
-          open = hn::And(open, hn::Ge(at(i, row), hn::Zero(d)));
+          unhidden = hn::And(unhidden, hn::Ge(at(i, row), hn::Zero(d)));
         }
         // A pixel of the cell is not before the box's farthest point.
-        auto surely = hn::And(open, hn::Le(min, farthest));
+        auto surely = hn::And(unhidden, hn::Le(min, farthest));
         if (!hn::AllFalse(d, surely)) {
           // All of the cell lies in the outline.
           for (std::uint32_t i = 0; i < BoxOutline::kEdges; ++i) {
             surely = hn::And(surely, hn::Ge(at(i, row), hn::Set(d, across[i])));
           }
         }
-        result.open[row] |= static_cast<std::uint8_t>(bitsOf(open, lane));
+        result.open[row] |= static_cast<std::uint8_t>(bitsOf(unhidden, lane));
         result.surely[row] |= static_cast<std::uint8_t>(bitsOf(surely, lane));
       }
     });
@@ -241,7 +241,7 @@ struct Refinement {
   }
 
   // Sets `open` to a cell in the middle of those that are marked. False: none is.
-  bool settle(std::uint32_t level, std::uint32_t y0, std::uint32_t from,
+  bool settle(std::uint32_t level, std::uint32_t first_row, std::uint32_t from,
               const std::uint8_t (&marks)[kBlock]) {
     std::uint32_t rows = 0;
     for (std::uint32_t i = 0; i < kBlock; ++i) {
@@ -251,7 +251,7 @@ struct Refinement {
       return false;
     }
     const std::uint32_t row = middleBit(rows);
-    open = {level, from + middleBit(marks[row]), y0 + row};
+    open = {level, from + middleBit(marks[row]), first_row + row};
     return true;
   }
 
