@@ -4,7 +4,6 @@
 #include "src/occlusion/surface_raster.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +18,8 @@ constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many 
 // In an orthographic view it changes as the view turns, and no rest is longer.
 constexpr std::uint32_t kSteadyRest = 7;
 constexpr double kTravelOfView = 1.0 / 400.0;
+
+constexpr std::uint32_t kLastView = 0xffffffffu;  // number of a view; after it they begin again
 
 // Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
 // is noticed from then on.
@@ -89,32 +90,26 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
   work_ = waiting_work_ = 0;
   rested_ = 0;
   reserve(set);
-  const std::array sizes{set.clusters.size(), set.chains.size(), set.patches.size(), set.parts.size()};
-  if (set_ != &set || sizes_ != sizes) {
-    set_ = &set;
-    sizes_ = sizes;
-    step = ViewStep::kJump;
-  }
-  if (view_number_ == 0xffffffffu) {
+  const double moved = length(eye - eye_);
+  const bool anew = set_number_ != set.number || view_number_ == kLastView || !std::isfinite(travel_ + moved);
+  if (view_number_ == kLastView) {
     std::fill(patch_rests_.begin(), patch_rests_.end(), Rest{});
     std::fill(part_rests_.begin(), part_rests_.end(), Rest{});
     std::fill(facings_.begin(), facings_.end(), Facing{});
     std::fill(drawn_in_.begin(), drawn_in_.end(), 0u);
     view_number_ = 0;
-    step = ViewStep::kJump;
   }
-  const double moved = length(eye - eye_);
-  if (!std::isfinite(travel_ + moved)) {
-    step = ViewStep::kJump;
-  }
-  view_number_ += step == ViewStep::kSame ? 0 : 1;
-  first_view_ = step == ViewStep::kJump ? view_number_ : first_view_;
-  if (step == ViewStep::kJump) {
+  view_number_ += step == ViewStep::kSame && !anew ? 0 : 1;
+  if (anew) {
+    first_of_set_ = view_number_;
     travel_ = 0.0;
   } else if (moved > 0.0) {
     // Rounded up: however short the steps are, none is lost.
     travel_ = std::nextafter(travel_ + moved, std::numeric_limits<double>::infinity());
   }
+  first_view_ = step == ViewStep::kJump || anew ? view_number_ : first_view_;
+  set_ = &set;
+  set_number_ = set.number;
   eye_ = eye;
 }
 
@@ -134,10 +129,11 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
 // the direction instead.
 const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
   Facing& facing = facings_[patch];
-  if (view_.view().orthographic || facing.since < first_view_ || !(travel_ < facing.travel)) {
+  if (view_.view().orthographic || facing.since < first_of_set_ || !(travel_ < facing.travel)) {
     const PatchSide found = view_.sideOf(patch);
+    constexpr double kRoundDown = 1.0 - std::numeric_limits<double>::epsilon();
     facing = {view_number_, found.side < 0 && !set_->patches[patch].double_sided,
-              static_cast<std::int8_t>(found.side), std::nextafter(travel_ + found.travel, 0.0)};
+              static_cast<std::int8_t>(found.side), (travel_ + found.travel) * kRoundDown};
   }
   return facing;
 }

@@ -3,7 +3,6 @@
 // Draws whole surfaces into a depth buffer, by the winding of their boundaries. See docs/conservative.md,
 // "Surfaces".
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -79,7 +78,7 @@ class SurfaceRaster {
   void account(const Group& group, const WindingGain& gain, std::uint64_t work);
 
   const SurfaceSet* set_ = nullptr;
-  std::array<std::size_t, 4> sizes_{};  // of the set, by which one made anew in the same place is noticed
+  SurfaceSetNumber set_number_;  // of the set that was drawn last
   SurfaceDrawing drawing_;
   const ParallelFor* parallel_for_ = nullptr;  // of the view
   std::int32_t winding_ = 1;                   // of a front in this view; -1 in one that mirrors
@@ -108,11 +107,12 @@ class SurfaceRaster {
   std::vector<ShownPatch> sides_;
   std::vector<PatchImage> shown_, patches_;
   std::uint32_t view_number_ = 0;
-  std::uint32_t first_view_ = 0;  // number of the first one since a jump
-  std::uint32_t rested_ = 0;      // groups that began to rest in this view
-  Vec3d eye_;                     // of the last view
-  double travel_ = 0.0;           // of the eye, from view to view since a jump, metres
-  double part_distance_ = 0.0;    // Group::distance of the part that addPart() was called for
+  std::uint32_t first_view_ = 0;    // number of the first one since a jump
+  std::uint32_t first_of_set_ = 0;  // number of the first one since which the same set is drawn
+  std::uint32_t rested_ = 0;        // groups that began to rest in this view
+  Vec3d eye_;                       // of the last view
+  double travel_ = 0.0;             // of the eye, from view to view of the set, or more; metres
+  double part_distance_ = 0.0;      // Group::distance of the part that addPart() was called for
 };
 
 }  // namespace sightline::occlusion

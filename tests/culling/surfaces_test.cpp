@@ -690,6 +690,49 @@ TEST(SurfaceProbes, ASetMadeAnewInTheSamePlaceIsAnotherSet) {
   }
 }
 
+// Sides of patches that are remembered of one set must not count for another one of the same sizes.
+TEST(SurfaceProbes, ASetOfTheSameSizesMadeAnewInTheSamePlaceIsAnotherSet) {
+  // Tilted to the left, and then to the right: what faced the eye faces away.
+  const auto tilted = [](float by) {
+    Scene scene;
+    const MaterialId material = addMaterial(scene, Opacity::kOpaque, false);
+    for (int i = 0; i < 20; ++i) {
+      const float x = static_cast<float>(i - 10);
+      std::vector<Vec3f> corners;
+      addQuad(corners, {x, -9.0f, -20.0f}, {x + 0.4f, -9.0f, -20.0f + by}, {x + 0.4f, 9.0f, -20.0f + by},
+              {x, 9.0f, -20.0f});
+      addTriangles(scene, material, corners);
+    }
+    return scene;
+  };
+  const Scene before = tilted(3.0f), after = tilted(-3.0f);
+  Rasteriser raster({.width = 64, .height = 64}), fresh({.width = 64, .height = 64});
+  SurfaceDrawing drawing = kEverything;
+  drawing.step = ViewStep::kNext;
+  drawing.draw_resting = true;
+  SurfaceSet set = findSurfaces(before.view());
+  const std::size_t patches = set.patches.size(), chains = set.chains.size(), clusters = set.clusters.size();
+  raster.begin(frontView());
+  raster.draw(set, set.objects, drawing);
+  set = findSurfaces(after.view());
+  ASSERT_EQ(set.patches.size(), patches);
+  ASSERT_EQ(set.chains.size(), chains);
+  ASSERT_EQ(set.clusters.size(), clusters);
+  raster.begin(frontView());
+  raster.draw(set, set.objects, drawing);
+  fresh.begin(frontView());
+  fresh.draw(set, set.objects, drawing);
+  EXPECT_TRUE(prove(after, frontView(), raster.depthBuffer()).right());
+  std::size_t covered = 0;
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    EXPECT_TRUE(std::ranges::equal(raster.depthBuffer().row(y), fresh.depthBuffer().row(y))) << y;
+    for (std::uint32_t x = 0; x < 64; ++x) {
+      covered += fresh.depthBuffer().covered(x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(covered, 20u);
+}
+
 TEST(SurfaceProbes, HostileInputHidesNothing) {
   constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
                   kInf = std::numeric_limits<float>::infinity();

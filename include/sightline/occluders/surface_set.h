@@ -72,8 +72,20 @@ struct SurfacePart {
   std::uint32_t edge_count = 0;                    // of its boundary
 };
 
-// Made by findSurfaces() and not to be changed by hand.
+// Tells a set from all others, also from one that lay in the same place before: each has a number of its own,
+// and a copy that of its original.
+class SurfaceSetNumber {
+ public:
+  SurfaceSetNumber();
+  friend bool operator==(const SurfaceSetNumber&, const SurfaceSetNumber&) = default;
+
+ private:
+  std::uint64_t value_;
+};
+
+// Made by findSurfaces() and not to be changed by hand: what is known of a set is kept from view to view.
 struct SurfaceSet {
+  SurfaceSetNumber number{};
   // Scene space; no two are equal.
   LargeVector<Vec3f> vertices{};
   // Each triangle has three vertices, counter-clockwise as seen from its front; triangles are sorted by
