@@ -210,6 +210,28 @@ TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
   EXPECT_TRUE(shows());
 }
 
+// A wall is seen from its back, which is drawn at first. The later join is as large as the first one and lies
+// in the same place.
+TEST(World, AJoinMadeAnewHidesNothingByBacksThatAreNotDrawn) {
+  Story story({panelShape(true), panelShape(false), boxShape()});
+  const Mat4 turned = boxAt({8, -8, -10}, {-16, 16, -1});
+  const InstanceId wall = story.add(0, turned), crate = story.add(2, boxAt({0, 0, -20}, {1, 1, 1}));
+  const View view = viewFrom({0, 0, 0}, {0, 0, -1});
+  WorldCuller culler;
+  const JoinId join = story.world.use(story.world.prepareJoin(std::array{wall}));
+  for (int frame = 0; frame < 3; ++frame) {
+    culler.cull(story.world, view);
+  }
+  EXPECT_FALSE(keeps(culler, crate));
+  story.world.drop(join);
+  story.world.replace(wall, {.mesh = story.meshes[1], .world_from_mesh = turned});
+  story.world.use(story.world.prepareJoin(std::array{wall}));
+  for (int frame = 0; frame < 3; ++frame) {
+    culler.cull(story.world, view);
+    EXPECT_TRUE(keeps(culler, crate));
+  }
+}
+
 // This holds also where each triangle is a part of its own, drawn together with those that adjoin it.
 TEST(World, AMemberThatIsHiddenOrRemovedHidesNothing) {
   for (const bool hidden : {true, false}) {
