@@ -664,6 +664,34 @@ TEST(SurfaceProbes, ViewsThatFollowEachOtherAreDrawnAsTheyAreAlone) {
   EXPECT_GT(covered, 300'000u);
 }
 
+// After a way of 10^18 m, steps of 60 m are less than half of the last place of its length.
+TEST(SurfaceProbes, AfterALongWayNoStepIsLost) {
+  const Scene scene = sheet(
+      2, 40000.0f, 10.0f, [](float, float) { return 0.0f; }, none, true);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 16, .height = 16});
+  SurfaceDrawing drawing = kEverything;
+  drawing.draw_resting = true;
+  drawing.step = ViewStep::kNext;
+  View view = frontView();
+  view.far = 1e5;
+  std::size_t covered = 0;
+  const auto draw = [&](const Vec3d& eye) {
+    view.eye = eye;
+    setOrientation(view, {0, 0, eye.z > -10.0 ? -1.0 : 1.0}, {0, 1, 0});
+    raster.begin(view);
+    raster.draw(surfaces, surfaces.objects, drawing);
+    covered += raster.depthBuffer().covered(8, 8) ? 1 : 0;
+  };
+  draw({1e18, 0, 3000});
+  draw({0, 0, 3000});
+  ASSERT_EQ(covered, 1u);
+  for (double z = 2950.0; z > -3000.0; z -= 60.0) {
+    draw({0, 0, z});
+  }
+  EXPECT_EQ(covered, 101u);
+}
+
 TEST(SurfaceProbes, ASetMadeAnewInTheSamePlaceIsAnotherSet) {
   const SurfaceSettings settings{.cluster_triangles = 1};
   const Scene small = pairs(1e-3f, 0.0f), large = pairs(1.8f, 1.5f);
