@@ -206,6 +206,40 @@ TEST(WindingMap, CoversAllPixelsInsideARectangleAndNoOthersInAMapOfAnySize) {
   }
 }
 
+// Edges that come to a border of the map, from within or from outside, leave the pixels there open.
+TEST(WindingMap, EdgesAtItsBordersCount) {
+  constexpr double kUnit = 1.0 / kGridStep;
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {33u, 9u}, {64u, 16u}, {8u, 7u}}) {
+    for (const bool in_runs : {true, false}) {
+      for (int side = 0; side < 4; ++side) {
+        for (const int beyond : {-2, -1, 0, 8}) {
+          // The borders of the box: left, lower, right, upper.
+          std::array<double, 4> at{-3.0, -3.0, width + 3.0, height + 3.0};
+          at[static_cast<std::size_t>(side)] = side < 2   ? -beyond * kUnit
+                                               : side < 3 ? width + beyond * kUnit
+                                                          : height + beyond * kUnit;
+          std::vector<std::vector<GridPoint>> polygons{box(at[0], at[1], at[2], at[3])};
+          if (!in_runs) {
+            // Two edges begin the group at the same height.
+            polygons.push_back(box(-30.0, -9.0, -20.0, height + 9.0));
+          }
+          SmallMap map(width, height);
+          map.draw(polygons, 1, 1.0f);
+          for (std::uint32_t y = 0; y < height; ++y) {
+            for (std::uint32_t x = 0; x < width; ++x) {
+              const bool beside =
+                  std::array{x == 0, y == 0, x + 1 == width, y + 1 == height}[static_cast<std::size_t>(side)];
+              EXPECT_EQ(map.covered(x, y), beyond > 0 || !beside)
+                  << width << " x " << height << ", side " << side << ", " << beyond << " beyond, pixel " << x
+                  << ", " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(WindingMap, SumsUpEdgesOfAnyValueAsFarAsItCanHold) {
   // Sheets over each other, of which one or all face away.
   for (const int sheets : {1, 2, 7, 8, 15, 16, 40}) {
