@@ -240,6 +240,37 @@ TEST(WindingMap, EdgesAtItsBordersCount) {
   }
 }
 
+// Edges to the left of a group's rectangle count in its first tile, and nothing of them is left behind.
+TEST(WindingMap, DrawsOnlyTheTilesOfTheRectangle) {
+  for (const bool in_runs : {true, false}) {
+    SmallMap map(200, 16);
+    std::vector<std::vector<GridPoint>> polygons{box(3.5, -1.0, 150.0, 17.0)};
+    if (!in_runs) {
+      polygons.push_back(box(160.0, -1.0, 170.0, 17.0));
+    }
+    std::vector<BoundaryEdge> edges;
+    for (const std::vector<GridPoint>& polygon : polygons) {
+      for (std::size_t i = 1; i < polygon.size(); ++i) {
+        const BoundaryEdge edge = prepareEdge(polygon[i - 1], polygon[i], map.map().buffer());
+        if (edge.matters) {
+          edges.push_back(edge);
+        }
+      }
+    }
+    const std::array boundary{BoundaryChain{0, static_cast<std::uint32_t>(edges.size()), 1}};
+    const PixelRectangle rectangle{70, 8, 100, 16};
+    const std::array depths{PartDepth{rectangle, {.floor = 1.0f}}};
+    std::array<WindingGain, 1> gains;
+    map.map().draw(std::array{WindingGroup{rectangle, boundary, depths, true}}, edges, gains);
+    map.draw(std::array{box(178.5, -1.0, 190.5, 17.0), box(194.5, -1.0, 199.0, 17.0)}, 1, 2.0f);
+    for (std::uint32_t y = 0; y < 16; ++y) {
+      for (std::uint32_t x = 0; x < 178; ++x) {
+        EXPECT_EQ(map.covered(x, y), x >= 64 && x < 128 && y >= 8) << in_runs << ", pixel " << x << ", " << y;
+      }
+    }
+  }
+}
+
 TEST(WindingMap, SumsUpEdgesOfAnyValueAsFarAsItCanHold) {
   // Sheets over each other, of which one or all face away.
   for (const int sheets : {1, 2, 7, 8, 15, 16, 40}) {
