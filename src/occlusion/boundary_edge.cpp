@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // An edge in each lane. Coordinates are whole numbers of less than 2^53, for which doubles are exact.
-using Doubles = hn::CappedTag<double, 8>;
+using Doubles = hn::CappedTag<double, kMostLanes>;
 using DoublesV = hn::Vec<Doubles>;
 inline constexpr Doubles kDoubles;
 
@@ -24,13 +24,11 @@ constexpr double kPixel = kGridStep, kMargin = BoundaryEdge::kMargin, kBeyond = 
 
 // What was computed of the edges of a vector.
 struct Prepared {
-  static constexpr std::size_t kMost = 8;
-
-  HWY_ALIGN double x[kMost], slope[kMost];
-  HWY_ALIGN float left[kMost], right[kMost], reach[kMost], doubt[kMost];
-  HWY_ALIGN std::int32_t bottom[kMost], top[kMost], first_row[kMost], last_row[kMost], first_crossed[kMost],
-      end_crossed[kMost], first_tile[kMost], last_tile[kMost], kind[kMost], falls[kMost], rightwards[kMost],
-      matters[kMost];
+  HWY_ALIGN double x[kMostLanes], slope[kMostLanes];
+  HWY_ALIGN float left[kMostLanes], right[kMostLanes], reach[kMostLanes], doubt[kMostLanes];
+  HWY_ALIGN std::int32_t bottom[kMostLanes], top[kMostLanes], first_row[kMostLanes], last_row[kMostLanes],
+      first_crossed[kMostLanes], end_crossed[kMostLanes], first_tile[kMostLanes], last_tile[kMostLanes],
+      kind[kMostLanes], falls[kMostLanes], rightwards[kMostLanes], matters[kMostLanes];
 
   static std::int16_t narrow(std::int32_t v) { return static_cast<std::int16_t>(v); }
   BoundaryEdge edge(std::size_t i) const {
@@ -92,7 +90,7 @@ HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeB
                 hn::Lt(left, set(end_x))),
         out.matters);
   store(clamp(bottom, 0.0, end_y), out.bottom);
-  store(clamp(top, -1.0, end_y), out.top);
+  store(clamp(top, 0.0, end_y), out.top);
   const auto rowOf = [&](DoublesV y) HWY_ATTR {
     return clamp(hn::Floor(hn::Mul(y, set(1.0 / kPixel))), 0.0, buffer.height);
   };

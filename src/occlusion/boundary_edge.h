@@ -74,17 +74,18 @@ struct BoundaryChain {
   std::int32_t value = 0;              // not 0
 };
 
-// Lines from one point to another, by coordinate. Vectors of up to eight doubles may be read from any line
-// on.
+// Edges are prepared in vectors of so many at most, which may be read from any edge of a list on.
+inline constexpr std::size_t kMostLanes = 8;
+
+// Lines from one point to another, by coordinate.
 struct GridLines {
   std::vector<double> from_x{}, from_y{}, to_x{}, to_y{};  // as in GridPoint
 
   // Makes room for so many.
   void reserve(std::size_t count) {
-    constexpr std::size_t kVector = 8;
-    if (from_x.size() < count + kVector) {
+    if (from_x.size() < count + kMostLanes) {
       for (std::vector<double>* list : {&from_x, &from_y, &to_x, &to_y}) {
-        list->resize(2 * count + kVector);
+        list->resize(2 * count + kMostLanes);
       }
     }
   }

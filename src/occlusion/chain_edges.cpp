@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Does what PixelView and ChainEdges::pixelOf() do, with the same bits, and a point in each lane.
 class PointProjection {
  public:
-  using Doubles = hn::CappedTag<double, 8>;
+  using Doubles = hn::CappedTag<double, kMostLanes>;
   using DoublesV = hn::Vec<Doubles>;
 
   HWY_INLINE PointProjection(const PixelView& view, double clip_depth)
@@ -94,10 +94,9 @@ void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip
 }
 
 void ChainEdges::makeRoom(std::size_t more) {
-  constexpr std::size_t kVector = 8;
-  if (ends_[0].size() < count_ + more + kVector) {
+  if (ends_[0].size() < count_ + more + kMostLanes) {
     for (std::vector<float>& list : ends_) {
-      list.resize(2 * (count_ + more) + kVector);
+      list.resize(2 * (count_ + more) + kMostLanes);
     }
   }
 }

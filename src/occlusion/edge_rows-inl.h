@@ -62,8 +62,8 @@ HWY_INLINE BitsV bitsBetween(NumbersV first, NumbersV end) {
 // Where an edge crosses the rows of some tiles. Lengths are in 256ths of a pixel.
 class EdgeRows {
  public:
-  // rises: to the right of the edge the winding is greater; of a level
-  // edge this is a convention. above_inner: of a level edge, the surface lies above it.
+  // rises: to the right of the edge the winding is greater; of a level edge this is a convention.
+  // above_inner: of a level edge, the surface lies above it.
   HWY_INLINE EdgeRows(const BoundaryEdge& edge, const EdgeBuffer& buffer, bool rises, bool above_inner)
       : edge_(edge), last_place_(buffer.width * kPixel + kBeyond), rises_(rises), above_inner_(above_inner) {}
 

@@ -19,6 +19,9 @@ constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many 
 constexpr std::uint32_t kSteadyRest = 7;
 constexpr double kTravelOfView = 1.0 / 400.0;
 
+// Sums of a sound set stay far below. One that reaches this belongs to no group that is drawn.
+constexpr std::int32_t kMostSum = (1 << 30) + 1;
+
 constexpr std::uint32_t kLastView = 0xffffffffu;  // number of a view; after it they begin again
 
 // Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
@@ -294,10 +297,10 @@ void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters, std::spa
   summed_.clear();
   for (const ClusterImage& image : clusters) {
     for (const std::uint32_t chain : set_->chainsOf(set_->clusters[image.cluster])) {
-      for (const ChainUse& use : set_->usesOf(set_->chains[chain])) {
-        if (use.cluster == image.cluster) {
-          addToSum(chain, use.value * image.sign);
-        }
+      const std::span<const ChainUse> uses = set_->usesOf(set_->chains[chain]);
+      const auto use = std::ranges::lower_bound(uses, image.cluster, {}, &ChainUse::cluster);
+      if (use != uses.end() && use->cluster == image.cluster) {
+        addToSum(chain, use->value * image.sign);
       }
     }
     if (image.cut) {
@@ -322,7 +325,7 @@ void SurfaceRaster::addToSum(std::uint32_t chain, std::int32_t value) {
     sum = {group_, 0};
     summed_.push_back(chain);
   }
-  sum.value += value;
+  sum.value = std::clamp(sum.value + value, -kMostSum, kMostSum);
 }
 
 // Adds the lines along which the near plane cuts the cluster's triangles.

@@ -25,8 +25,8 @@ class SurfaceRaster {
   const SurfaceStats& stats() const { return stats_; }
 
  private:
-  // How often the clusters of the group that a chain was in most recently run along it, less how often they
-  // run back.
+  // How often what is of the group that a chain was in most recently runs along it, less how often it runs
+  // back.
   struct ChainSum {
     std::uint32_t group = 0;
     std::int32_t value = 0;
@@ -35,9 +35,9 @@ class SurfaceRaster {
   // The side of a patch that the eye is on, as it was found in a view.
   struct Facing {
     std::uint32_t since = 0;  // number of the view
-    bool away = false;        // what shows is a back, and nothing is drawn of it
-    std::int8_t side = 0;     // as in PatchSide
-    double travel = 0.0;      // it is the same at least until travel_ is that much
+    bool away = false;     // a back shows, of which nothing is drawn, so that the patch need not be looked at
+    std::int8_t side = 0;  // as in PatchSide
+    double travel = 0.0;   // it is the same at least until travel_ is that much
   };
 
   // What is not worth its cost is left out for some views.

@@ -152,11 +152,9 @@ PatchSide SurfaceView::sideOf(std::uint32_t number) const {
   const double beside = std::sqrt(std::max(0.0, dot(middle, middle) - along * along)) + radius;
   const double sine = std::sqrt(std::max(0.0, 1.0 - cone * cone));
   const double slack = above * cone - beside * sine;
-  const bool sure = slack > 0.0 && above > 0.0;
+  const std::int32_t nearer_side = height > 0.0 ? 1 : -1;
   // When the eye moves by a metre, `above` and `beside` change by at most one.
-  return {.side = !sure          ? 0
-                  : height > 0.0 ? 1
-                                 : -1,
+  return {.side = slack > 0.0 && above > 0.0 ? nearer_side : 0,
           .travel = view_.orthographic ? 0.0 : 0.999 * std::abs(slack) / (cone + sine)};
 }
 

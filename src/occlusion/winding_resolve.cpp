@@ -49,7 +49,7 @@ class PlaneDepths {
                 kPlaces, at_rows_ + lane);
     }
   }
-  // What the depths of the pixels from x on have in common from row y of the tiles on.
+  // What ofRow() takes for the pixels from x on, in row y of the tiles and those above it.
   HWY_INLINE PixelsV ofColumn(std::int32_t x, std::int32_t) const {
     return hn::Mul(hn::Iota(kPixels, static_cast<float>(x)), hn::Set(kPixels, depth_.along_x));
   }
