@@ -87,6 +87,9 @@ void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& opti
   const auto tasks = static_cast<std::uint32_t>(std::min<std::size_t>(count, kMaxRanges));
   // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
   const auto traverseRange = [&](std::uint32_t begin, std::uint32_t end) {
+    if (begin == end) {
+      return;  // an empty range has no task whose results it could write
+    }
     Found& found = found_[begin];
     const auto entryOf = [&](std::uint32_t task) {
       return entries_.begin() + static_cast<std::ptrdiff_t>(count * task / tasks);

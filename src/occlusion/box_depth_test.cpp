@@ -245,7 +245,7 @@ struct Refinement {
               const std::uint8_t (&marks)[kBlock]) {
     std::uint32_t rows = 0;
     for (std::uint32_t i = 0; i < kBlock; ++i) {
-      rows |= (marks[i] != 0 ? 1u : 0u) << i;
+      rows |= static_cast<std::uint32_t>(marks[i] != 0) << i;
     }
     if (rows == 0) {
       return false;

@@ -134,7 +134,7 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
   }
   gains_.assign(groups.size() * rows, {});
   const auto drawBand = [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (std::size_t i = 0; begin < end && i < groups.size(); ++i) {
       const TileRange& tiles = plans_[i].tiles;
       gains_[rows * i + begin] =
           drawRows(groups[i], plans_[i], edges, std::max(tiles.first_row, static_cast<std::int32_t>(begin)),

@@ -161,13 +161,25 @@ TEST(WideTraversal, KeepsInEachViewOfAWalkWhatItKeepsInThatViewAlone) {
   EXPECT_GT(changed, 100u);
 }
 
-// Cuts ranges into pieces and goes through them backwards.
+// Cuts ranges into pieces and goes through them backwards. Before each piece there is an empty range, which
+// begins where another piece does or at the end.
 void forPiecesBackwards(std::uint32_t count, const RangeBody& body) {
+  body(count, count);
   for (std::uint32_t end = count; end > 0;) {
     const std::uint32_t begin = end > 3 ? end - 3 : 0;
     body(begin, end);
+    body(begin, begin);
     end = begin;
   }
+}
+
+TEST(WideTraversal, WithoutObjectsARangeMayBeEmpty) {
+  const Bed bed(test::kFamilies[0], 1, 0);
+  const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+  WideTraversal traversal(bvh, bed.boxes);
+  Answer answer;
+  traversal.run(bed.pyramid, {}, answer.stats, answer.kept, forPiecesBackwards);
+  EXPECT_TRUE(answer.kept.empty());
 }
 
 TEST(WideTraversal, ThreadsChangeNoAnswerAndNoCount) {

@@ -528,10 +528,8 @@ TEST(WindingMap, DrawsTheSameHoweverItsRowsAreDivided) {
   std::mt19937 random(23);
   const auto divided = [&random](std::uint32_t count, const RangeBody& body) {
     std::vector<std::uint32_t> ends;
-    for (std::uint32_t i = 1; i < count; ++i) {
-      if (random() % 2 == 0) {
-        ends.push_back(i);
-      }
+    for (std::uint32_t i = 1; i <= count; ++i) {
+      ends.insert(ends.end(), random() % 3, i);  // twice: a range may be empty
     }
     ends.push_back(count);
     for (std::size_t i = ends.size(); i > 0; --i) {  // the last ones first
