@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #include "oracle/exact_visibility.h"
+#include "sightline/culling/culler.h"
+#include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/edge_scene.h"
@@ -104,6 +107,43 @@ AnySettings focused(bool coherent) {
   settings.raster = {.width = 96, .height = 96};  // coarse, so that it leaks
   settings.temporal_coherence = coherent;
   return settings;
+}
+
+// A finer buffer may hide a box of which the first one shows a point.
+TEST(FocusedCuller, SeesNoPointOfABoxThatAFinerBufferHides) {
+  std::size_t hidden_by_windows = 0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Street street(seed);
+    DepthPyramidMethodSettings settings{.raster = {.width = 96, .height = 96}, .focus = {.worth = 1e9}};
+    const CullingScene scene{.hierarchy = &street.hierarchy,
+                             .object_bounds = street.bounds,
+                             .occluders = &street.occluders};
+    std::unique_ptr<CullingMethod> owned = depthPyramid(settings);
+    settings.focus.windows = 0;
+    std::unique_ptr<CullingMethod> owned_without = depthPyramid(settings);
+    CullingMethod &method = *owned, &without = *owned_without;
+    Culler culler(scene, std::move(owned)), culler_without(scene, std::move(owned_without));
+    std::vector<MovingBox> boxes;
+    std::vector<Vec3f> points;
+    for (const Box& box : street.bounds) {
+      boxes.push_back({box});
+      points.push_back(Vec3f(center(box)));
+    }
+    std::vector<Visibility> states(boxes.size());
+    std::vector<std::uint8_t> seen(boxes.size()), seen_without(boxes.size());
+    for (const View& view : street.views) {
+      culler.cull(view);
+      culler_without.cull(view);
+      method.classify(boxes, states);
+      method.seesPoints(points, seen);
+      without.seesPoints(points, seen_without);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        EXPECT_FALSE(seen[i] != 0 && states[i] == Visibility::kHidden) << "seed " << seed << ", box " << i;
+        hidden_by_windows += seen_without[i] != 0 && states[i] == Visibility::kHidden ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(hidden_by_windows, 0u);
 }
 
 TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {

@@ -233,6 +233,35 @@ TEST(WideTraversal, CoherenceKeepsALittleMoreForAWhile) {
   EXPECT_GT(lingering, 0u);
 }
 
+// Boxes that are known by points rest as long as those that are tested.
+TEST(WideTraversal, CoherentAnswersDependOnNothingThatWasForgotten) {
+  std::size_t rested = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Bed bed(test::kFamilies[0], seed, 600);
+    const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+    WideTraversal walked(hierarchy, bed.boxes);
+    const OccluderSet set = test::setOf(bed.scene.polygons);
+    const Vec3d step = bed.scene.random.point(0.3) * bed.scene.scale;
+    const auto walk = [&](const auto& look) {
+      for (int view = 0; view < 6; ++view) {
+        bed.scene.view.eye += step;
+        bed.pyramid.build(bed.scene.view, set, test::all(set));
+        look();
+      }
+    };
+    walk([&] { traversed(walked, bed.pyramid, {}); });
+    walked.forget();
+    WideTraversal fresh(hierarchy, bed.boxes);
+    walk([&] {
+      const Answer answer = traversed(walked, bed.pyramid, {}), expected = traversed(fresh, bed.pyramid, {});
+      EXPECT_EQ(answer.kept, expected.kept) << "seed " << seed;
+      EXPECT_EQ(answer.stats.objects_tested, expected.stats.objects_tested) << "seed " << seed;
+      rested += answer.kept.size() - notHidden(bed.pyramid, bed.boxes, hierarchy).size();
+    });
+  }
+  EXPECT_GT(rested, 0u);
+}
+
 TEST(WideTraversal, OptionsKeepMoreAndNeverMoreThanTheView) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Bed bed(test::kFamilies[0], seed, 600);
