@@ -440,9 +440,8 @@ Visibility testOne(std::span<const DepthLevel> levels, const OutlineView& outlin
                                                                                    : Visibility::kHidden;
 }
 
-void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void testAll(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
-  const OutlineView outline_view(view);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
     if (!hints.seen.empty() && hints.seen[i] != 0) {
@@ -453,7 +452,7 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
     const Question question{.plain = i >= hints.plain_from,
                             .not_hidden = !hints.not_hidden.empty() && hints.not_hidden[i] != 0,
                             .seen_point = hints.seen_points.empty() ? nullptr : &hints.seen_points[i]};
-    answers[i] = image.answer(testOne(levels, outline_view, boxes[i], image, question));
+    answers[i] = image.answer(testOne(levels, view, boxes[i], image, question));
   }
 }
 
@@ -483,12 +482,11 @@ std::uint32_t openPixelsOf(std::span<const DepthLevel> levels, const OutlineView
   return static_cast<std::uint32_t>(pixels.size() - before);
 }
 
-void openPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void openPixels(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
                 std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
                 std::vector<BufferPixel>& pixels) {
-  const OutlineView outline_view(view);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    counts[i] = openPixelsOf(levels, outline_view, boxes[i], images[i], max, pixels);
+    counts[i] = openPixelsOf(levels, view, boxes[i], images[i], max, pixels);
   }
 }
 
@@ -535,7 +533,7 @@ HWY_EXPORT(testAll);
 HWY_EXPORT(openPixels);
 HWY_EXPORT(hidesWithin);
 
-void findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void findOpenPixels(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
                     std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
                     std::vector<BufferPixel>& pixels) {
   HWY_DYNAMIC_DISPATCH(openPixels)(levels, view, boxes, images, max, counts, pixels);
@@ -546,7 +544,7 @@ bool hidesBoxWithin(std::span<const DepthLevel> levels, const OutlineView& view,
   return HWY_DYNAMIC_DISPATCH(hidesWithin)(levels, view, box, ranges);
 }
 
-void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void testBoxes(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   HWY_DYNAMIC_DISPATCH(testAll)(levels, view, boxes, images, answers, hints);
 }

@@ -11,7 +11,6 @@
 #include "src/occlusion/depth_levels.h"
 #include "src/occlusion/pixel_boxes.h"
 #include "src/occlusion/pixel_range.h"
-#include "src/scene/pixel_view.h"
 
 namespace sightline::occlusion {
 
@@ -21,14 +20,14 @@ namespace sightline::occlusion {
 // no pixel of the rectangle is nearer than its farthest point, and partial otherwise. The rectangle of a box
 // that reaches the near plane is the whole buffer, and such a box is hidden or partial. Without levels no box
 // is hidden that may be on the buffer. Every instruction set gives the same answers.
-void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void testBoxes(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 
 // Appends, box by box, the pixels in which the buffer does not surely hide it, and sets counts[i] to how many
 // they are. It is kManyPixels, and none are appended, where they are more than `max`, where the box reaches
 // the near plane, and without levels. images and counts: one for each box. Every instruction set gives the
 // same pixels in the same order.
-void findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+void findOpenPixels(std::span<const DepthLevel> levels, const OutlineView& view, std::span<const Box> boxes,
                     std::span<const PixelBox> images, std::uint32_t max, std::span<std::uint32_t> counts,
                     std::vector<BufferPixel>& pixels);
 // Whether the buffer surely hides what of a box lies in these pixels and beyond the near plane. ranges: not

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "src/occlusion/box_depth_test.h"
+#include "src/occlusion/box_outline.h"
 #include "src/occlusion/depth_levels.h"
 #include "src/occlusion/pixel_boxes.h"
 
@@ -21,7 +22,7 @@ struct DepthPyramid::Impl {
   Rasteriser raster;
   DepthLevels levels;
   bool finished = false;
-  PixelView view;
+  OutlineView view;
   BoxProjection projection;
   DepthPyramidStats stats;
 
@@ -59,8 +60,8 @@ void DepthPyramid::build(const View& view, const OccluderSet& set, std::span<con
 void DepthPyramid::begin(const View& view) {
   const DepthBufferView buffer = impl_->raster.depthBuffer();
   impl_->raster.begin(view);
-  impl_->view = PixelView(view, buffer.width, buffer.height);
-  impl_->projection = BoxProjection(impl_->view, buffer.width, buffer.height);
+  impl_->view = OutlineView(PixelView(view, buffer.width, buffer.height));
+  impl_->projection = BoxProjection(impl_->view.view, buffer.width, buffer.height);
   impl_->finished = false;
   impl_->stats.raster = impl_->raster.stats();
 }

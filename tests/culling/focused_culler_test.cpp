@@ -115,9 +115,8 @@ TEST(FocusedCuller, SeesNoPointOfABoxThatAFinerBufferHides) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Street street(seed);
     DepthPyramidMethodSettings settings{.raster = {.width = 96, .height = 96}, .focus = {.worth = 1e9}};
-    const CullingScene scene{.hierarchy = &street.hierarchy,
-                             .object_bounds = street.bounds,
-                             .occluders = &street.occluders};
+    const CullingScene scene{
+        .hierarchy = &street.hierarchy, .object_bounds = street.bounds, .occluders = &street.occluders};
     std::unique_ptr<CullingMethod> owned = depthPyramid(settings);
     settings.focus.windows = 0;
     std::unique_ptr<CullingMethod> owned_without = depthPyramid(settings);

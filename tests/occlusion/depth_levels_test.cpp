@@ -226,7 +226,7 @@ struct Bed {
     DepthLevels levels;
     levels.build(buffer.view());
     BoxAnswer answer;
-    testBoxes(levels.levels(), view, {&box, 1}, {&image, 1}, {&answer, 1});
+    testBoxes(levels.levels(), OutlineView(view), {&box, 1}, {&image, 1}, {&answer, 1});
     return answer;
   }
 
@@ -368,7 +368,7 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
     DepthLevels levels;
     levels.build(bed.buffer.view());
     std::vector<BoxAnswer> all(boxes.size());
-    testBoxes(levels.levels(), bed.view, boxes, images, all);
+    testBoxes(levels.levels(), OutlineView(bed.view), boxes, images, all);
     const auto same = [&](const std::vector<BoxAnswer>& answers) {
       return std::ranges::equal(all, answers, [](const BoxAnswer& a, const BoxAnswer& b) {
         return a.visibility == b.visibility && a.within_view == b.within_view;
@@ -377,14 +377,14 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
     for (const std::int64_t target : targets) {
       hwy::SetSupportedTargetsForTest(target);
       std::vector<BoxAnswer> answers(boxes.size());
-      testBoxes(levels.levels(), bed.view, boxes, images, answers);
+      testBoxes(levels.levels(), OutlineView(bed.view), boxes, images, answers);
       hwy::SetSupportedTargetsForTest(0);
       EXPECT_TRUE(same(answers)) << hwy::TargetName(target) << ", seed " << seed;
     }
     std::vector<BoxAnswer> parts(boxes.size());
     for (std::size_t first = 0; first < boxes.size();) {
       const std::size_t count = std::min<std::size_t>(1 + bed.random.below(9), boxes.size() - first);
-      testBoxes(levels.levels(), bed.view, std::span(boxes).subspan(first, count),
+      testBoxes(levels.levels(), OutlineView(bed.view), std::span(boxes).subspan(first, count),
                 std::span(images).subspan(first, count), std::span(parts).subspan(first, count));
       first += count;
     }
