@@ -84,8 +84,9 @@ class WideTraversal {
   std::size_t object_count_;
   ObjectBits visible_;
   std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again
-  // By child: a point of its box at which it was last seen, first its centre. Where that is still seen, the
-  // child is not hidden, and no more of it is looked at; the answers do not depend on it.
+  // By child: a point of its box at which it was last seen, first its centre. Where that is still seen, an
+  // object is kept untested, and of a node only kVisible and kPartial are told apart; the answers do not
+  // depend on it.
   std::vector<Vec3f> seen_points_;
   ObjectSet in_set_;
   // By child: an object below it is in the set. Empty until restrictTo() gets a set without some object.
