@@ -55,6 +55,9 @@ struct Rasteriser::Impl {
   }
 
   void drawBands(std::uint32_t begin, std::uint32_t end) {
+    if (begin == end) {
+      return;  // the scratch of the band at which it would begin is another range's
+    }
     const RasterBand band = bandOf(begin, end);
     if (settings.coverage != nullptr) {
       settings.coverage->draw(polygons, order, band);

@@ -68,8 +68,9 @@ void backwards(std::uint32_t count, const RangeBody& body) {
   }
 }
 
-// Calls the body for uneven ranges, the odd ones first and then the even ones.
+// Calls the body for uneven ranges, the odd ones first and then the even ones, and for an empty one.
 void uneven(std::uint32_t count, const RangeBody& body) {
+  body(count, count);
   for (const std::uint32_t first : {1u, 0u}) {
     for (std::uint32_t begin = 3 * first; begin < count; begin += 6) {
       body(begin, std::min(begin + 3, count));
