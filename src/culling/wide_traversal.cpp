@@ -30,7 +30,7 @@ class WideTraversal::Task {
 
   // Visits these nodes. Appends the objects to keep to found.kept, and the nodes to visit to found.stack.
   void visit(std::span<const Entry> entries);
-  // The same for all nodes of found.stack, and those below them.
+  // Visits all nodes of found.stack, and those below them.
   void visitAll();
 
  private:

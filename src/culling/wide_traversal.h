@@ -65,7 +65,7 @@ class WideTraversal {
     // Children of the nodes visited so far, to be tested together: against the occluders, or against the
     // view's volume alone.
     std::vector<Child> nodes, objects, nodes_in_view, objects_in_view;
-    // Of the children that are tested in one call, one value each.
+    // These have a value for each of the children that are tested in one call.
     std::vector<Box> boxes;
     std::vector<Vec3f> points;  // of seen_points_
     std::vector<std::uint8_t> seen, retest_delay;

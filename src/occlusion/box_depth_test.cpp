@@ -225,7 +225,7 @@ struct Refinement {
     return result;
   }
 
-  // From now on these pixels are compared.
+  // Sets which pixels are compared from now on.
   void compare(const PixelRange& range) {
     image.x0 = range.x0;
     image.y0 = range.y0;
@@ -362,8 +362,7 @@ void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const B
 
 // Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
 // outline and its faces hold for those points of it that are before the eye.
-//
-// Where it does not, sets *seen_point as setPoint() does.
+// Where the box is not hidden, *seen_point becomes a point of it that may be seen, as in setPoint().
 bool hidesUnbounded(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                     Vec3f* seen_point) {
   const PixelView& view = outline_view.view;

@@ -43,7 +43,7 @@ struct BoxAndPixel {
       pixel = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
     }
   }
-  // Of the pixels at a depth, metres.
+  // The size of a pixel at a depth, metres.
   double pixelSize(double depth) const {
     return (view.orthographic ? 1.0 : depth) / std::max(view.scale_x, view.scale_y);
   }
