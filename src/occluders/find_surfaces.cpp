@@ -1,7 +1,6 @@
 // Connected clusters of all opaque triangles of a scene, and their boundaries.
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -147,11 +146,6 @@ void listByObject(const occluders::SurfaceMesh& mesh, std::span<const std::uint3
 }
 
 }  // namespace
-
-SurfaceSetNumber::SurfaceSetNumber() {
-  static std::atomic<std::uint64_t> last = 0;
-  value_ = ++last;
-}
 
 SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
