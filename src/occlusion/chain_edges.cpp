@@ -29,16 +29,18 @@ class PointProjection {
     const DoublesV from_eye[3] = {load(x, view_.eye.x), load(y, view_.eye.y), load(z, view_.eye.z)};
     const DoublesV depth = along(view_.forward, from_eye);
     const DoublesV inverse = view_.orthographic ? set(1.0) : hn::Div(set(1.0), depth);
-    hn::StoreU(place(along(view_.right, from_eye), inverse, view_.scale_x, view_.middle_x), d_, pixel_x);
-    hn::StoreU(place(along(view_.up, from_eye), inverse, view_.scale_y, view_.middle_y), d_, pixel_y);
-    return hn::AllTrue(d_, hn::Or(hn::Ge(depth, set(clip_depth_)), hn::Not(hn::FirstN(d_, count))));
+    hn::StoreU(place(along(view_.right, from_eye), inverse, view_.scale_x, view_.middle_x), kDoubles,
+               pixel_x);
+    hn::StoreU(place(along(view_.up, from_eye), inverse, view_.scale_y, view_.middle_y), kDoubles, pixel_y);
+    return hn::AllTrue(kDoubles,
+                       hn::Or(hn::Ge(depth, set(clip_depth_)), hn::Not(hn::FirstN(kDoubles, count))));
   }
 
  private:
-  static HWY_INLINE DoublesV set(double v) { return hn::Set(d_, v); }
+  static HWY_INLINE DoublesV set(double v) { return hn::Set(kDoubles, v); }
   static HWY_INLINE DoublesV load(const float* from, double eye) {
     const hn::Rebind<float, Doubles> floats;
-    return hn::Sub(hn::PromoteTo(d_, hn::LoadU(floats, from)), set(eye));
+    return hn::Sub(hn::PromoteTo(kDoubles, hn::LoadU(floats, from)), set(eye));
   }
   static HWY_INLINE DoublesV along(const Vec3d& axis, const DoublesV (&v)[3]) {
     return hn::Add(hn::Add(hn::Mul(set(axis.x), v[0]), hn::Mul(set(axis.y), v[1])),
@@ -50,7 +52,7 @@ class PointProjection {
     return hn::Sub(hn::Add(hn::Mul(pixel, set(kGridStep)), whole), whole);
   }
 
-  static constexpr Doubles d_{};
+  static constexpr Doubles kDoubles{};
   const PixelView& view_;
   double clip_depth_;
 };

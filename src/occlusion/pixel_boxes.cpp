@@ -290,6 +290,8 @@ HWY_INLINE void forGroupsOf(D d, const float* floats, std::size_t count, const U
 }
 template <std::size_t kFloats, typename Use>
 HWY_INLINE void forGroups(const float* floats, std::size_t count, const Use& use) {
+  // Where vectors have few lanes, the two are the same.
+  // NOLINTNEXTLINE(bugprone-branch-clone)
   if (count <= kFewLanes) {
     forGroupsOf<kFloats>(Few(), floats, count, use);
   } else {
