@@ -9,7 +9,8 @@
 #include "src/occlusion/box_outline.h"
 #include "src/occlusion/box_point.h"
 
-// Arrays of vectors are used here, which those without a fixed size cannot be in: see pixel_boxes.cpp.
+// Arrays of vectors are used here, which those without a fixed size cannot be in. Machines with these
+// instruction sets take the best one that is left; no test is left out, all run on every set that is left.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/box_depth_test.cpp"

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 // Vectors are members here, which those without a fixed size cannot be. Machines with these instruction sets
 // take the best one that is left; no test is left out, all run on every set that is left.
@@ -290,13 +291,13 @@ HWY_INLINE void forGroupsOf(D d, const float* floats, std::size_t count, const U
 }
 template <std::size_t kFloats, typename Use>
 HWY_INLINE void forGroups(const float* floats, std::size_t count, const Use& use) {
-  // Where vectors have few lanes, the two are the same.
-  // NOLINTNEXTLINE(bugprone-branch-clone)
-  if (count <= kFewLanes) {
-    forGroupsOf<kFloats>(Few(), floats, count, use);
-  } else {
-    forGroupsOf<kFloats>(Many(), floats, count, use);
+  if constexpr (!std::is_same_v<Few, Many>) {
+    if (count <= kFewLanes) {
+      forGroupsOf<kFloats>(Few(), floats, count, use);
+      return;
+    }
   }
+  forGroupsOf<kFloats>(Many(), floats, count, use);
 }
 
 void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<PixelBox> images) {

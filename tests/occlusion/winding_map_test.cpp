@@ -26,13 +26,19 @@ struct Polygon {
   std::int32_t value = 1;
 };
 
-BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer) {
+// Appends the edges of a path that matter to a buffer. Returns them as a chain.
+BoundaryChain addChain(std::span<const GridPoint> points, std::int32_t value, const EdgeBuffer& buffer,
+                       std::vector<BoundaryEdge>& edges) {
+  const std::size_t count = points.size() - 1, first = edges.size();
   GridLines lines;
-  lines.reserve(1);
-  lines.set(0, from, to);
-  std::array<BoundaryEdge, 1> edges;
-  prepareEdges(lines, buffer, edges);
-  return edges[0];
+  lines.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    lines.set(i, points[i], points[i + 1]);
+  }
+  edges.resize(first + count);
+  prepareEdges(lines, buffer, std::span(edges).subspan(first));
+  std::erase_if(edges, [](const BoundaryEdge& edge) { return !edge.matters; });
+  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first), value};
 }
 
 // Draws polygons as one group that has one depth.
@@ -41,15 +47,7 @@ void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBo
   std::vector<BoundaryEdge> edges;
   std::vector<BoundaryChain> chains;
   for (const Polygon& polygon : polygons) {
-    const std::size_t first = edges.size();
-    for (std::size_t i = 1; i < polygon.points.size(); ++i) {
-      const BoundaryEdge edge = prepareEdge(polygon.points[i - 1], polygon.points[i], buffer);
-      if (edge.matters) {
-        edges.push_back(edge);
-      }
-    }
-    chains.push_back(
-        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first), polygon.value});
+    chains.push_back(addChain(polygon.points, polygon.value, buffer, edges));
   }
   const PixelRectangle all{0, 0, buffer.width, buffer.height};
   const std::array depths{PartDepth{all, depth}};
@@ -250,12 +248,7 @@ TEST(WindingMap, DrawsOnlyTheTilesOfTheRectangle) {
     }
     std::vector<BoundaryEdge> edges;
     for (const std::vector<GridPoint>& polygon : polygons) {
-      for (std::size_t i = 1; i < polygon.size(); ++i) {
-        const BoundaryEdge edge = prepareEdge(polygon[i - 1], polygon[i], map.map().buffer());
-        if (edge.matters) {
-          edges.push_back(edge);
-        }
-      }
+      addChain(polygon, 1, map.map().buffer(), edges);
     }
     const std::array boundary{BoundaryChain{0, static_cast<std::uint32_t>(edges.size()), 1}};
     const PixelRectangle rectangle{70, 8, 100, 16};
@@ -364,12 +357,7 @@ TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNe
       SmallMap map(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
       std::vector<BoundaryEdge> edges;
       for (const std::vector<GridPoint>& polygon : polygons) {
-        for (std::size_t i = 1; i < polygon.size(); ++i) {
-          const BoundaryEdge edge = prepareEdge(polygon[i - 1], polygon[i], map.map().buffer());
-          if (edge.matters) {
-            edges.push_back(edge);
-          }
-        }
+        addChain(polygon, 1, map.map().buffer(), edges);
       }
       const auto count = static_cast<std::uint32_t>(edges.size());
       // The right edge of the first polygon lies beyond the map, so that one edge begins it and none ends it.
@@ -546,15 +534,7 @@ TEST(WindingMap, DrawsTheSameHoweverItsRowsAreDivided) {
     for (std::uint32_t k = 0; k < 6; ++k) {
       const Polygon polygon =
           k % 2 == 0 ? convexPolygon(random, width, height) : anyPolygon(random, width, height);
-      const std::size_t first = edges.size();
-      for (std::size_t i = 1; i < polygon.points.size(); ++i) {
-        const BoundaryEdge edge = prepareEdge(polygon.points[i - 1], polygon.points[i], whole.map().buffer());
-        if (edge.matters) {
-          edges.push_back(edge);
-        }
-      }
-      chains.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first),
-                        polygon.value});
+      chains.push_back(addChain(polygon.points, polygon.value, whole.map().buffer(), edges));
     }
     const std::array depths{PartDepth{all, {.along_x = 0.01f, .at_origin = 1.0f}},
                             PartDepth{all, {.along_y = 0.02f, .at_origin = 1.0f}}};
