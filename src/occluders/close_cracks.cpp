@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -14,9 +12,9 @@
 #include "sightline/math/box.h"
 #include "src/base/hash_slots.h"
 #include "src/base/rows.h"
-#include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
 #include "src/occluders/conform_pairs.h"
+#include "src/occluders/near_line.h"
 
 namespace sightline::occluders {
 namespace {
@@ -24,50 +22,10 @@ namespace {
 // Distances are rounded by much less than this part of themselves and of the coordinates.
 constexpr double kRounded = 1e-14;
 
-// A vertex beside an edge or on it. The greater `along` is, the farther it is from the edge's lower end.
+// A vertex beside an edge. The greater `along` is, the farther it is from the edge's lower end.
 struct Beside {
   double along = 0.0;
   std::uint32_t vertex = 0;
-};
-
-// Grows a box in single precision, outwards, so that boxes meet if the points are closer than the width.
-Box grown(const Vec3d& low, const Vec3d& high, double by) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr float kFar = std::numeric_limits<float>::max();
-    box.min[axis] = std::nextafterf(static_cast<float>(low[axis] - by), -kFar);
-    box.max[axis] = std::nextafterf(static_cast<float>(high[axis] + by), kFar);
-  }
-  return box;
-}
-
-// What is close to a line. Source: the separating axes of a segment and a box (Gottschalk, Lin, Manocha.
-// OBBTree: a hierarchical structure for rapid interference detection. SIGGRAPH 1996), of which those that are
-// normal to the line and to an edge of the box.
-class Line {
- public:
-  Line(const Vec3d& at, const Vec3d& to, double width) : at_(at), along_(to - at), width_(width) {}
-
-  // False only if all of the box is farther from the line than the width.
-  bool mayMeet(const Box& box) const {
-    // Rounding is by much less than this part of what is added up.
-    constexpr double kMargin = 1e-12;
-    const Vec3d low(box.min), high(box.max);
-    const Vec3d from = at_ - (low + high) * 0.5, half = (high - low) * 0.5 + Vec3d(width_, width_, width_);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int i = (axis + 1) % 3, k = (axis + 2) % 3;
-      const double p = from[i] * along_[k], q = from[k] * along_[i];
-      const double reach = half[i] * std::abs(along_[k]) + half[k] * std::abs(along_[i]);
-      if (std::abs(p - q) > reach + kMargin * (std::abs(p) + std::abs(q) + reach)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
- private:
-  Vec3d at_, along_;
-  double width_;
 };
 
 class Closing {
@@ -83,41 +41,10 @@ class Closing {
       findOpenEdges();
       mergeVertices();
       findOpenEdges();
-      leadEdges([this](const MeshEdge& edge, std::uint32_t v) {
-        const double part = partOfEdge(edge, v), distance = distanceFrom(edge, v, part);
-        return Place{part > 0.0 && part < 1.0 && distance < width_, part, distance};
-      });
+      leadEdges();
     }
     assemble();
     return std::move(result_);
-  }
-
-  ClosedCracks join(std::span<const std::uint8_t> open) {
-    takeOpenEdges(open);
-    joinOpenEdges();
-    assemble();
-    return std::move(result_);
-  }
-
-  base::Rows<std::uint32_t> verticesOn(std::span<const MeshEdge> edges) {
-    const auto taken = [this](const MeshEdge& edge) {
-      return geometry::Lattice::allowed(at(edge.low)) && geometry::Lattice::allowed(at(edge.high)) &&
-             at(edge.low) != at(edge.high);
-    };
-    std::copy_if(edges.begin(), edges.end(), std::back_inserter(open_), taken);
-    listVertices();
-    joinOpenEdges();
-    base::Rows<std::uint32_t> on_edges;
-    std::size_t next = 0;
-    for (const MeshEdge& edge : edges) {
-      if (next < open_.size() && open_[next] == edge) {
-        for (const Beside& beside : beside_[next++]) {
-          on_edges.add(beside.vertex);
-        }
-      }
-      on_edges.endRow();
-    }
-    return on_edges;
   }
 
   std::vector<NearMiss> findNearMisses() {
@@ -135,7 +62,7 @@ class Closing {
     });
     std::vector<Box> boxes;
     for (const MeshEdge& edge : open_) {
-      boxes.push_back(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
+      boxes.push_back(grownBox(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
     }
     std::vector<std::uint32_t> numbers(boxes.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
@@ -144,7 +71,7 @@ class Closing {
     parallel_for_(static_cast<std::uint32_t>(vertices_.size()), [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t place = begin; place < end; ++place) {
         const std::uint32_t v = vertices_[place];
-        edges.forMeeting(grown(at(v), at(v), 0.0), [&](std::uint32_t edge) {
+        edges.forMeeting(grownBox(at(v), at(v), 0.0), [&](std::uint32_t edge) {
           const auto [low, high] = open_[edge];
           const double part = std::clamp(partOfEdge(open_[edge], v), 0.0, 1.0);
           const std::span<const std::uint32_t> own = next_to[v];
@@ -173,7 +100,6 @@ class Closing {
 
  private:
   static constexpr std::uint32_t kEdgesOfPart = 1024;
-  static constexpr std::size_t kMostBends = 4096;
 
   const Vec3d& at(std::uint32_t vertex) const { return input_.vertices[vertex]; }
 
@@ -212,20 +138,6 @@ class Closing {
     listVertices();
   }
 
-  // Takes those that are named: by triangle, bit k for the edge from corner k to the next.
-  void takeOpenEdges(std::span<const std::uint8_t> open) {
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      const std::uint32_t a = triangles_[i], b = triangles_[i % 3 == 2 ? i - 2 : i + 1];
-      if ((open[i / 3] >> (i % 3) & 1) != 0 && a != b && geometry::Lattice::allowed(at(a)) &&
-          geometry::Lattice::allowed(at(b))) {
-        open_.push_back(meshEdge(a, b));
-      }
-    }
-    std::sort(open_.begin(), open_.end());
-    open_.erase(std::unique(open_.begin(), open_.end()), open_.end());
-    listVertices();
-  }
-
   void listVertices() {
     vertices_.clear();
     for (const MeshEdge& edge : open_) {
@@ -243,7 +155,7 @@ class Closing {
   BoxPairs vertexBoxes() const {
     std::vector<Box> boxes;
     for (const std::uint32_t v : vertices_) {
-      boxes.push_back(grown(at(v), at(v), 0.0));
+      boxes.push_back(grownBox(at(v), at(v), 0.0));
     }
     std::vector<std::uint32_t> places(boxes.size());
     std::iota(places.begin(), places.end(), 0u);
@@ -304,40 +216,8 @@ class Closing {
     return length(at(v) - at(edge.low) - (at(edge.high) - at(edge.low)) * part);
   }
 
-  // Whether an edge is to be led through a vertex, where along it, and how far the vertex lies beside it.
-  struct Place {
-    bool leads = false;
-    double along = 0.0, distance = 0.0;
-  };
-
-  // Leads open edges through the vertices that lie on them exactly.
-  void joinOpenEdges() {
-    lattice_ = geometry::Lattice::of(input_.vertices);
-    leadEdges([this](const MeshEdge& edge, std::uint32_t v) { return placeOn(edge, v); });
-  }
-
-  // Returns the place of a vertex that is exactly on an edge, between its ends.
-  Place placeOn(const MeshEdge& edge, std::uint32_t v) const {
-    const Vec3d &low = at(edge.low), &high = at(edge.high), &p = at(v);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (geometry::orientation(lattice_, axis, low, high, p) != 0) {
-        return {};
-      }
-    }
-    // Points of a line are in the order of any coordinate that is not the same for all of them.
-    int axis = 0;
-    while (low[axis] == high[axis]) {
-      ++axis;
-    }
-    const bool up = low[axis] < high[axis];
-    const double along = up ? p[axis] : -p[axis];
-    return {along > (up ? low[axis] : -low[axis]) && along < (up ? high[axis] : -high[axis]), along, 0.0};
-  }
-
-  // Leads open edges through vertices. place_of(edge, vertex) is a Place. An edge of more than kMostBends
-  // places stays as it is: many long edges beside many vertices would take their product of memory.
-  template <typename PlaceOf>
-  void leadEdges(const PlaceOf& place_of) {
+  // Leads open edges through the vertices beside them.
+  void leadEdges() {
     const BoxPairs boxes = vertexBoxes();
     const auto count = static_cast<std::uint32_t>(open_.size());
     const std::uint32_t parts = (count + kEdgesOfPart - 1) / kEdgesOfPart;  // whatever the threads
@@ -346,25 +226,8 @@ class Closing {
     parallel_for_(parts, [&](std::uint32_t begin, std::uint32_t end) {
       std::vector<Beside> found;
       for (std::uint32_t e = begin * kEdgesOfPart; e < std::min(count, end * kEdgesOfPart); ++e) {
-        const MeshEdge& edge = open_[e];
         const std::uint32_t part = e / kEdgesOfPart;
-        const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
-        double farthest = 0.0;
-        found.clear();
-        const Line line(at(edge.low), at(edge.high), width_);
-        boxes.forMeeting(
-            grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_),
-            [&line](const Box& box) { return line.mayMeet(box); },
-            [&](std::uint32_t place) {
-              const std::uint32_t v = vertices_[place];
-              if (v == edge.low || v == edge.high || found.size() > kMostBends) {
-                return;
-              }
-              if (const Place at_edge = place_of(edge, v); at_edge.leads) {
-                found.push_back({at_edge.along, v});
-                farthest = std::max(farthest, width_ > 0.0 ? at_edge.distance + kRounded * reach : 0.0);
-              }
-            });
+        const double farthest = findBeside(boxes, open_[e], found);
         if (found.size() <= kMostBends) {
           bending[part] = std::max(bending[part], farthest);
           for (const Beside& beside : found) {
@@ -377,121 +240,49 @@ class Closing {
     for (std::uint32_t part = 0; part < parts; ++part) {
       bending_ = std::max(bending_, bending[part]);
       for (std::size_t row = 0; row < of_part[part].count(); ++row) {
-        for (const Beside& beside : of_part[part][row]) {
-          beside_.add(beside);
+        const std::span<Beside> beside = of_part[part][row];
+        std::sort(beside.begin(), beside.end(), [&](const Beside& a, const Beside& b) {
+          return std::tie(a.along, at(a.vertex).x, at(a.vertex).y, at(a.vertex).z) <
+                 std::tie(b.along, at(b.vertex).x, at(b.vertex).y, at(b.vertex).z);
+        });
+        for (const Beside& b : beside) {
+          through_.add(b.vertex);
         }
-        beside_.endRow();
+        through_.endRow();
+        result_.bent += beside.size();
       }
-    }
-    for (std::size_t edge = 0; edge < beside_.count(); ++edge) {
-      std::sort(beside_[edge].begin(), beside_[edge].end(), [&](const Beside& a, const Beside& b) {
-        return std::tie(a.along, at(a.vertex).x, at(a.vertex).y, at(a.vertex).z) <
-               std::tie(b.along, at(b.vertex).x, at(b.vertex).y, at(b.vertex).z);
-      });
-      result_.bent += beside_[edge].size();
     }
   }
 
-  // The vertices through which the way from a to b is led, in this direction.
-  void findWay(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& way) const {
-    way.clear();
-    const MeshEdge edge = meshEdge(a, b);
-    const auto found = std::lower_bound(open_.begin(), open_.end(), edge);
-    if (found == open_.end() || *found != edge || beside_.count() == 0) {
-      return;
-    }
-    for (const Beside& beside : beside_[static_cast<std::size_t>(found - open_.begin())]) {
-      way.push_back(beside.vertex);
-    }
-    if (a > b) {
-      std::reverse(way.begin(), way.end());
-    }
-  }
-
-  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t source) {
-    if (a != b && b != c && c != a) {
-      result_.triangles.insert(result_.triangles.end(), {a, b, c});
-      result_.source.push_back(source);
-    } else {
-      result_.collapsed.insert(result_.collapsed.end(), {a, b, c});
-      result_.collapsed_source.push_back(source);
-    }
-  }
-
-  // Adds the triangles between a point and each step of the way from a to b.
-  void addFan(std::uint32_t point, std::uint32_t a, std::span<const std::uint32_t> way, std::uint32_t b,
-              std::uint32_t source) {
-    for (const std::uint32_t next : way) {
-      add(point, a, next, source);
-      a = next;
-    }
-    add(point, a, b, source);
-  }
-
-  // Whether what is left of a triangle runs back along its own border: its corners lie on a line, or have
-  // come to do so.
-  bool isFolded(const std::uint32_t (&corners)[3]) {
-    loop_.clear();
-    for (std::size_t k = 0; k < 3; ++k) {
-      loop_.push_back(corners[k]);
-      loop_.insert(loop_.end(), ways_[k].begin(), ways_[k].end());
-    }
-    steps_.clear();
-    for (std::size_t i = 0; i < loop_.size(); ++i) {
-      const std::uint32_t a = loop_[i], b = loop_[i + 1 < loop_.size() ? i + 1 : 0];
-      if (a != b) {
-        steps_.push_back({meshEdge(a, b), a < b});
-      }
-    }
-    std::sort(steps_.begin(), steps_.end());
-    for (std::size_t i = 0; i < steps_.size();) {
-      int value = 0;
-      const MeshEdge edge = steps_[i].first;
-      for (; i < steps_.size() && steps_[i].first == edge; ++i) {
-        value += steps_[i].second ? 1 : -1;
-      }
-      if (value != 0) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  // A triangle whose edges are led through vertices is divided as if these lay on the edges: a fan from a
-  // corner to the opposite edge, whose first and last triangle are fans to the other edges.
-  void addBent(const std::uint32_t (&corners)[3], std::uint32_t source) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      findWay(corners[k], corners[(k + 1) % 3], ways_[k]);
-    }
-    std::size_t first = 0;
-    while (first < 3 && ways_[first].empty()) {
-      ++first;
-    }
-    if (first == 3) {
-      add(corners[0], corners[1], corners[2], source);
-      return;
-    }
-    if (isFolded(corners)) {
-      for (std::size_t i = 0; i < loop_.size(); ++i) {
-        const std::uint32_t next = loop_[i + 1 < loop_.size() ? i + 1 : 0];
-        add(loop_[i], next, next, source);
-      }
-      return;
-    }
-    const std::uint32_t a = corners[first], b = corners[(first + 1) % 3], c = corners[(first + 2) % 3];
-    const std::vector<std::uint32_t>&to_b = ways_[first], &to_c = ways_[(first + 1) % 3],
-          &to_a = ways_[(first + 2) % 3];
-    addFan(to_b.front(), c, to_a, a, source);
-    if (to_b.size() > 1) {
-      addFan(c, to_b.front(), std::span(to_b).subspan(1, to_b.size() - 2), to_b.back(), source);
-    }
-    addFan(to_b.back(), b, to_c, c, source);
+  // Finds the vertices beside an edge, or kMostBends of them and one more. Returns a bound of how far they
+  // lie beside it.
+  double findBeside(const BoxPairs& boxes, const MeshEdge& edge, std::vector<Beside>& found) const {
+    const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
+    double farthest = 0.0;
+    found.clear();
+    const NearLine line(at(edge.low), at(edge.high), width_);
+    boxes.forMeeting(
+        grownBox(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_),
+        [&line](const Box& box) { return line.mayMeet(box); },
+        [&](std::uint32_t place) {
+          const std::uint32_t v = vertices_[place];
+          if (v == edge.low || v == edge.high || found.size() > kMostBends) {
+            return;
+          }
+          const double part = partOfEdge(edge, v), distance = distanceFrom(edge, v, part);
+          if (part > 0.0 && part < 1.0 && distance < width_) {
+            found.push_back({part, v});
+            farthest = std::max(farthest, distance + kRounded * reach);
+          }
+        });
+    return farthest;
   }
 
   void assemble() {
+    const std::span<const MeshEdge> led = through_.count() > 0 ? open_ : std::span<const MeshEdge>();
+    TriangleBender bender(led, through_, result_);
     for (std::uint32_t t = 0; t < triangles_.size() / 3; ++t) {
-      const std::uint32_t corners[3] = {triangles_[3 * t], triangles_[3 * t + 1], triangles_[3 * t + 2]};
-      addBent(corners, t);
+      bender.add({triangles_[3 * t], triangles_[3 * t + 1], triangles_[3 * t + 2]}, t);
     }
     result_.slack = merging_ + bending_;
   }
@@ -503,11 +294,8 @@ class Closing {
   std::vector<MeshEdge> open_;              // ascending
   std::vector<std::uint32_t> triangle_at_;  // by open edge: one that has it
   std::vector<std::uint32_t> vertices_;     // of open edges, by place
-  base::Rows<Beside> beside_;               // by open edge, along it
-  std::vector<std::uint32_t> ways_[3], loop_;
-  std::vector<std::pair<MeshEdge, bool>> steps_;  // along loop_; true: from the lower vertex
-  geometry::Lattice lattice_;                     // if vertices have to lie on edges exactly
-  double merging_ = 0.0, bending_ = 0.0;          // how far each step moves a point at most
+  base::Rows<std::uint32_t> through_;       // by open edge: the vertices that it is led through
+  double merging_ = 0.0, bending_ = 0.0;    // how far each step moves a point at most
   ClosedCracks result_;
 };
 
@@ -515,16 +303,6 @@ class Closing {
 
 ClosedCracks closeCracks(const ConformInput& input, double width, const ParallelFor& parallel_for) {
   return Closing(input, width, parallel_for).close();
-}
-
-ClosedCracks joinEdges(const ConformInput& input, std::span<const std::uint8_t> open,
-                       const ParallelFor& parallel_for) {
-  return Closing(input, 0.0, parallel_for).join(open);
-}
-
-base::Rows<std::uint32_t> verticesOnEdges(std::span<const Vec3d> vertices, std::span<const MeshEdge> edges,
-                                          const ParallelFor& parallel_for) {
-  return Closing({vertices, {}}, 0.0, parallel_for).verticesOn(edges);
 }
 
 std::vector<NearMiss> findNearMisses(const ConformInput& input, double width,

@@ -20,9 +20,8 @@ struct ConformInput {
 // What is divided. Each includes those before it.
 enum class Divide : std::uint8_t {
   // Edges, at vertices that lie on them. No vertex is new, so nothing is rounded. It is all that surfaces of
-  // whole triangles need, for which joinEdges() does the same faster: what of a triangle's border cancels
-  // does
-  // not depend on how it is divided inside.
+  // whole triangles need, for which verticesOnEdges() and TriangleBender do the same faster: what of a
+  // triangle's border cancels does not depend on how it is divided inside.
   kEdges,
   // Faces, where an edge or a vertex of another triangle lies in them, and overlaps.
   kFaces,

@@ -8,7 +8,7 @@
 #include "src/base/rows.h"
 #include "src/base/scratch_array.h"
 #include "src/base/sort_keys.h"
-#include "src/occluders/close_cracks.h"
+#include "src/occluders/edge_vertices.h"
 #include "src/occluders/occluder_limits.h"
 
 namespace sightline::occluders {
@@ -78,24 +78,7 @@ struct DividedEdges {
 
 DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const MeshEdge> open,
                           const ParallelFor& parallel_for) {
-  std::vector<std::uint32_t> used;  // vertices, ascending
-  for (const MeshEdge& edge : open) {
-    used.insert(used.end(), {edge.low, edge.high});
-  }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto numberOf = [&](std::uint32_t vertex) {
-    return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), vertex) - used.begin());
-  };
-  std::vector<Vec3d> vertices;
-  for (const std::uint32_t vertex : used) {
-    vertices.emplace_back(positions[vertex]);
-  }
-  std::vector<MeshEdge> edges;
-  for (const MeshEdge& edge : open) {
-    edges.push_back({numberOf(edge.low), numberOf(edge.high)});
-  }
-  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(vertices, edges, parallel_for);
+  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(positions, open, parallel_for);
   DividedEdges divided;
   divided.begins.resize(positions.size());
   for (std::size_t i = 0; i < open.size(); ++i) {
@@ -105,7 +88,7 @@ DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const Mesh
     divided.edges.push_back(open[i]);
     divided.begins[open[i].low] = true;
     for (const std::uint32_t vertex : on_edges[i]) {
-      divided.vertices.add(used[vertex]);
+      divided.vertices.add(vertex);
     }
     divided.vertices.endRow();
   }

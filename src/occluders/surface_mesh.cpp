@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "src/base/parallel_rows.h"
-#include "src/occluders/close_cracks.h"
+#include "src/occluders/bend_triangles.h"
+#include "src/occluders/edge_vertices.h"
 #include "src/occluders/weld_vertices.h"
 
 namespace sightline::occluders {
 
 namespace {
 
-constexpr std::size_t kVerticesOfPart = 16384, kTrianglesOfPart = 16384;
+constexpr std::size_t kVerticesOfPart = 16384, kOpenEdgesOfPart = 32768;
 
 // A side before edges have numbers.
 struct LooseSide {
@@ -91,51 +92,70 @@ void connect(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
   });
 }
 
-// Whether the triangles at the edge from a corner on do not cancel.
-bool isOpen(const SurfaceMesh& mesh, Corner corner) {
-  const std::uint32_t beyond = mesh.beyond[corner];
-  if (beyond < SurfaceMesh::kOther || beyond == SurfaceMesh::kNone) {
-    return beyond == SurfaceMesh::kNone;
-  }
-  std::int32_t sum = 0;
-  for (const Side side : mesh.sides[beyond - SurfaceMesh::kOther]) {
-    sum += side.value();
-  }
-  return sum != 0;
-}
-
-// Triangles with edges at which they do not cancel, as joinEdges() wants them.
-struct OpenTriangles {
+// Edges at which triangles do not cancel.
+struct OpenEdges {
   std::vector<std::uint32_t> numbers;  // ascending
-  std::vector<std::uint32_t> corners;  // three vertices each
-  std::vector<std::uint8_t> edges;     // bit k for edge k
+  std::vector<MeshEdge> edges;         // ascending
 };
 
-OpenTriangles openTriangles(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const base::Parts parts(mesh.triangleCount(), kTrianglesOfPart);
-  std::vector<OpenTriangles> of_part(parts.count());
+OpenEdges openMeshEdges(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  const base::Parts parts(mesh.sides.count(), kOpenEdgesOfPart);
+  std::vector<OpenEdges> of_part(parts.count());
   parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      std::uint32_t open = 0;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        open |= isOpen(mesh, static_cast<Corner>(3 * t + k)) ? 1u << k : 0u;
+    for (std::size_t edge = begin; edge < end; ++edge) {
+      const std::span<const Side> sides = mesh.sides[edge];
+      std::int32_t sum = 0;
+      for (const Side side : sides) {
+        sum += side.value();
       }
-      if (open != 0) {
-        of_part[part].numbers.push_back(static_cast<std::uint32_t>(t));
-        of_part[part].edges.push_back(static_cast<std::uint8_t>(open));
+      if (sum != 0) {
+        const auto [low, high] = mesh.endsOf(sides[0]);
+        of_part[part].numbers.push_back(static_cast<std::uint32_t>(edge));
+        of_part[part].edges.push_back({low, high});
       }
     }
   });
-  OpenTriangles open;
-  for (const OpenTriangles& part : of_part) {
+  OpenEdges open;
+  for (const OpenEdges& part : of_part) {
     open.numbers.insert(open.numbers.end(), part.numbers.begin(), part.numbers.end());
     open.edges.insert(open.edges.end(), part.edges.begin(), part.edges.end());
   }
-  open.corners.reserve(3 * open.numbers.size());
-  for (const std::uint32_t t : open.numbers) {
-    open.corners.insert(open.corners.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
-  }
   return open;
+}
+
+// The pieces of triangles whose edges have vertices on them.
+struct DividedTriangles {
+  std::vector<std::uint32_t> numbers;  // of the triangles, ascending
+  BentTriangles pieces;                // the source is a place in `numbers`
+};
+
+DividedTriangles divideTriangles(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  const OpenEdges open = openMeshEdges(mesh, parallel_for);
+  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(mesh.vertices, open.edges, parallel_for);
+  DividedTriangles divided;
+  std::vector<MeshEdge> edges;
+  base::Rows<std::uint32_t> through;
+  for (std::size_t i = 0; i < open.edges.size(); ++i) {
+    if (on_edges[i].empty()) {
+      continue;
+    }
+    edges.push_back(open.edges[i]);
+    for (const std::uint32_t vertex : on_edges[i]) {
+      through.add(vertex);
+    }
+    through.endRow();
+    for (const Side side : mesh.sides[open.numbers[i]]) {
+      divided.numbers.push_back(side.triangle());
+    }
+  }
+  std::sort(divided.numbers.begin(), divided.numbers.end());
+  divided.numbers.erase(std::unique(divided.numbers.begin(), divided.numbers.end()), divided.numbers.end());
+  TriangleBender bender(edges, through, divided.pieces);
+  for (std::uint32_t place = 0; place < divided.numbers.size(); ++place) {
+    const std::array<std::uint32_t, 3>& corners = mesh.triangles[divided.numbers[place]];
+    bender.add({corners[0], corners[1], corners[2]}, place);
+  }
+  return divided;
 }
 
 }  // namespace
@@ -204,24 +224,20 @@ SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for) {
 }
 
 void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const OpenTriangles open = openTriangles(mesh, parallel_for);
-  if (open.numbers.empty()) {
+  const DividedTriangles divided = divideTriangles(mesh, parallel_for);
+  if (divided.numbers.empty()) {
     return;
   }
-  const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
-  const ClosedCracks divided = joinEdges({vertices, open.corners}, open.edges, parallel_for);
-  if (divided.bent == 0) {
-    return;
-  }
+  const BentTriangles& made = divided.pieces;
   SurfaceMesh pieces;
   pieces.triangles.reserve(mesh.triangles.size());
   pieces.objects.reserve(mesh.triangles.size());
   std::size_t next = 0, piece = 0;
   for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
     const std::size_t before = pieces.triangles.size();
-    if (next < open.numbers.size() && open.numbers[next] == t) {
-      for (; piece < divided.source.size() && divided.source[piece] == next; ++piece) {
-        const std::uint32_t* of = &divided.triangles[3 * piece];
+    if (next < divided.numbers.size() && divided.numbers[next] == t) {
+      for (; piece < made.source.size() && made.source[piece] == next; ++piece) {
+        const std::uint32_t* of = &made.triangles[3 * piece];
         pieces.triangles.push_back({of[0], of[1], of[2]});
       }
       ++next;

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <string>
 #include <thread>
@@ -80,82 +79,6 @@ TEST(CloseCracks, AVertexBesideAnEdgeBendsIt) {
   EXPECT_EQ(closed.bent, 1u);
   EXPECT_GE(closed.slack, 0.001);
   EXPECT_LT(closed.slack, 0.001001);
-}
-
-// Points with whole coordinates, of which many lie on lines through others, and some of the edges between
-// them.
-struct WholePoints {
-  std::vector<std::array<int, 3>> points;
-  std::vector<MeshEdge> edges;  // ascending, none twice
-
-  WholePoints(int size, std::size_t edge_count, unsigned seed) {
-    SoupRandom random(seed);
-    for (int i = 0; i < size * size * size; ++i) {
-      if (random.below(3) != 0) {
-        points.push_back({i % size, i / size % size, i / size / size});
-      }
-    }
-    const auto any = [&] {
-      return static_cast<std::uint32_t>(random.below(static_cast<int>(points.size())));
-    };
-    while (edges.size() < edge_count) {
-      const std::uint32_t a = any(), b = any();
-      if (a != b) {
-        edges.push_back(meshEdge(a, b));
-      }
-    }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  }
-  // Whether a point lies between the ends of an edge: products of small whole numbers, without rounding.
-  bool liesOn(const MeshEdge& edge, std::uint32_t v) const {
-    int along = 0, length = 0, to_end[3], to_point[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      to_end[i] = points[edge.high][i] - points[edge.low][i];
-      to_point[i] = points[v][i] - points[edge.low][i];
-      along += to_end[i] * to_point[i];
-      length += to_end[i] * to_end[i];
-    }
-    bool on_line = true;
-    for (int i = 0; i < 3; ++i) {
-      on_line = on_line && to_end[i] * to_point[(i + 1) % 3] == to_end[(i + 1) % 3] * to_point[i];
-    }
-    return on_line && along > 0 && along < length;
-  }
-};
-
-TEST(VerticesOnEdges, AreAllThatLieThereExactly) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    const WholePoints whole(7, 300, seed);
-    std::vector<bool> used(whole.points.size());
-    for (const MeshEdge& edge : whole.edges) {
-      used[edge.low] = used[edge.high] = true;
-    }
-    // Exactly the same for points that are small, large, or far away: all sums and products are exact.
-    for (const auto& [scale, offset] :
-         {std::pair{1.0, 0.0}, {0x1p-60, 0.0}, {0x1p20, -0x1p21}, {0.25, 0x1p20}}) {
-      std::vector<Vec3d> vertices;
-      for (const std::array<int, 3>& p : whole.points) {
-        vertices.push_back(Vec3d(p[0], p[1], p[2]) * scale + Vec3d(offset, offset, offset));
-      }
-      const base::Rows<std::uint32_t> found = verticesOnEdges(vertices, whole.edges);
-      ASSERT_EQ(found.count(), whole.edges.size());
-      std::size_t all = 0;
-      for (std::size_t e = 0; e < whole.edges.size(); ++e) {
-        std::vector<std::uint32_t> expected;
-        for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-          if (used[v] && whole.liesOn(whole.edges[e], v)) {
-            expected.push_back(v);
-          }
-        }
-        std::vector<std::uint32_t> on_edge(found[e].begin(), found[e].end());
-        std::sort(on_edge.begin(), on_edge.end());
-        EXPECT_EQ(on_edge, expected) << "seed " << seed << ", scale " << scale << ", edge " << e;
-        all += expected.size();
-      }
-      EXPECT_GT(all, 20u) << "seed " << seed;
-    }
-  }
 }
 
 TEST(CloseCracks, VerticesBesideLongObliqueEdgesBendThem) {
