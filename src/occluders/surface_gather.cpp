@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <span>
 #include <vector>
 
-#include "src/base/part_store.h"
 #include "src/base/parts.h"
+#include "src/base/scratch_array.h"
 
 namespace sightline::occluders {
 namespace {
@@ -39,20 +40,22 @@ bool isSimilar(const Vec3d& normal, const Vec3d& first, double min_cosine) {
   return normal == Vec3d{} || dot(normal, first) >= min_cosine;
 }
 
-// Twice as long as the area.
-Vec3d areaNormal(const SurfaceMesh& mesh, std::uint32_t triangle) {
-  const auto [a, b, c] = mesh.triangles[triangle];
-  const Vec3d at(mesh.vertices[a]);
-  return cross(Vec3d(mesh.vertices[b]) - at, Vec3d(mesh.vertices[c]) - at);
+// Twice as long as the area. corners: three vertices.
+Vec3d areaNormal(std::span<const Vec3f> vertices, const std::uint32_t* corners) {
+  const Vec3d at(vertices[corners[0]]);
+  return cross(Vec3d(vertices[corners[1]]) - at, Vec3d(vertices[corners[2]]) - at);
+}
+// Zero for a triangle without area.
+Vec3d unitNormal(std::span<const Vec3f> vertices, const std::uint32_t* corners) {
+  const Vec3d normal = areaNormal(vertices, corners);
+  const double size = length(normal);
+  return size > 0.0 ? normal / size : Vec3d{};
 }
 
 LargeVector<Vec3d> unitNormals(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  LargeVector<Vec3d> normals(mesh.triangleCount());
-  base::forEach(parallel_for, normals.size(), [&](std::uint32_t t) {
-    const Vec3d normal = areaNormal(mesh, t);
-    const double size = length(normal);
-    normals[t] = size > 0.0 ? normal / size : Vec3d{};
-  });
+  LargeVector<Vec3d> normals = base::unsetVector<Vec3d>(mesh.triangleCount());
+  base::forEach(parallel_for, normals.size(),
+                [&](std::uint32_t t) { normals[t] = unitNormal(mesh.vertices, mesh.triangles[t].data()); });
   return normals;
 }
 
@@ -102,32 +105,18 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
   return parts;
 }
 
-// What was gathered in some parts. Numbers of patches and clusters count from the first one here.
-struct Chunk {
-  std::vector<SurfacePatch> patches;
-  std::vector<SurfaceCluster> clusters;
-  std::vector<Box> patch_bounds, cluster_bounds;
-
-  void clear() {
-    patches.clear();
-    clusters.clear();
-    patch_bounds.clear();
-    cluster_bounds.clear();
-  }
-};
-
-// A PartStore keeps these copies of a chunk's arrays.
-struct KeptChunk {
-  std::span<SurfacePatch> patches;
-  std::span<const SurfaceCluster> clusters;
-  std::span<const Box> patch_bounds, cluster_bounds;
+// How the triangles of some parts are divided, part after part.
+struct Division {
+  std::vector<std::uint32_t> patch_counts;    // by part: patches
+  std::vector<std::uint32_t> cluster_counts;  // by patch: clusters
+  std::vector<std::uint32_t> sizes;           // by cluster: triangles
 };
 
 // Divides one part after the other into patches and clusters. Its triangles have numbers of their own, in the
 // order in which they were gathered.
 class PartDivider {
  public:
-  PartDivider(const SurfaceMesh& mesh, std::span<const Vec3d> normals, const PartTriangles& parts,
+  PartDivider(const SurfaceMesh& mesh, std::span<const Vec3d> normals, PartTriangles& parts,
               const SurfaceSettings& settings)
       : mesh_(mesh),
         normals_(normals),
@@ -136,57 +125,47 @@ class PartDivider {
         cluster_triangles_(clamped(settings.cluster_triangles)),
         min_cosine_(cosineOf(settings.max_angle_deg)) {}
 
-  // triangles, cluster_of: of the whole set. Clusters are numbered from the first one of the chunk.
-  void divide(std::uint32_t part, bool double_sided, Chunk& chunk, std::span<std::uint32_t> triangles,
+  // triangles, cluster_of: of the whole set. Clusters are numbered from the first one of the division. The
+  // triangles of the part are put into the order in which they were gathered to patches.
+  void divide(std::uint32_t part, Division& division, std::span<std::uint32_t> triangles,
               std::span<std::uint32_t> cluster_of) {
     begin_part_ = parts_.first[part];
     size_ = parts_.first[part + 1] - begin_part_;
     patch_of_.assign(size_, kUngathered);
     cluster_of_.assign(size_, kUngathered);
+    by_patch_.clear();
+    division.patch_counts.push_back(0);
     std::uint32_t written = begin_part_;
     for (std::uint32_t seed = 0; seed < size_; ++seed) {
       if (patch_of_[seed] != kUngathered) {
         continue;
       }
-      const auto patch_number = static_cast<std::uint32_t>(chunk.patches.size());
-      gather(seed, patch_triangles_, kUngathered, patch_number, patch_of_, in_patch_);
-      SurfacePatch& patch = chunk.patches.emplace_back();
-      patch.first_cluster = static_cast<std::uint32_t>(chunk.clusters.size());
-      double cosine = 1.0;
+      gather(seed, patch_triangles_, kUngathered, division.patch_counts.back()++, patch_of_, in_patch_);
+      const std::uint32_t patch = patch_of_[seed];
+      division.cluster_counts.push_back(0);
       for (const std::uint32_t first : in_patch_) {
+        by_patch_.push_back(triangleOf(first));
         if (cluster_of_[first] != kUngathered) {
           continue;
         }
-        const auto number = static_cast<std::uint32_t>(chunk.clusters.size());
+        const auto number = static_cast<std::uint32_t>(division.sizes.size());
         if (in_patch_.size() <= cluster_triangles_) {
           // Gathered from the same triangle on, the cluster has the triangles of the patch in the same order.
           in_cluster_ = in_patch_;
           std::for_each(in_patch_.begin(), in_patch_.end(),
                         [&](std::uint32_t i) { cluster_of_[i] = number; });
         } else {
-          gather(first, cluster_triangles_, patch_number, number, cluster_of_, in_cluster_);
+          gather(first, cluster_triangles_, patch, number, cluster_of_, in_cluster_);
         }
-        SurfaceCluster& cluster = chunk.clusters.emplace_back();
-        cluster.first_triangle = written;
-        cluster.triangle_count = static_cast<std::uint32_t>(in_cluster_.size());
-        cosine = measure(in_cluster_, cluster, chunk.cluster_bounds.emplace_back());
-        cluster.double_sided = double_sided;
+        ++division.cluster_counts.back();
+        division.sizes.push_back(static_cast<std::uint32_t>(in_cluster_.size()));
         for (const std::uint32_t i : in_cluster_) {
           std::copy_n(mesh_.triangles[triangleOf(i)].begin(), 3, &triangles[3 * std::size_t{written++}]);
           cluster_of[triangleOf(i)] = number;
         }
       }
-      if (in_patch_.size() <= cluster_triangles_) {
-        patch.support = chunk.clusters.back().support;
-        patch.thickness = chunk.clusters.back().thickness;
-        chunk.patch_bounds.push_back(chunk.cluster_bounds.back());
-      } else {
-        cosine = measure(in_patch_, patch, chunk.patch_bounds.emplace_back());
-      }
-      patch.cone_cosine = static_cast<float>(cosine - kRounding);
-      patch.double_sided = double_sided;
-      patch.cluster_count = static_cast<std::uint32_t>(chunk.clusters.size()) - patch.first_cluster;
     }
+    std::copy(by_patch_.begin(), by_patch_.end(), parts_.triangles.begin() + begin_part_);
   }
 
  private:
@@ -215,43 +194,104 @@ class PartDivider {
     }
   }
 
-  // Sets where some triangles lie and which way they face. Part: a SurfaceCluster or a SurfacePatch. Returns
-  // the cosine of the greatest angle between normals and that of the supporting plane, rounded down.
-  template <typename Part>
-  double measure(std::span<const std::uint32_t> members, Part& part, Box& bounds) const {
-    Vec3d axis{};
-    for (const std::uint32_t i : members) {
-      axis += areaNormal(mesh_, triangleOf(i));
-    }
-    const double size = length(axis);
-    axis = size > 0.0 ? axis / size : Vec3d{0.0, 0.0, 1.0};
-    double cosine = 1.0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest, reach = 0.0;
-    for (const std::uint32_t i : members) {
-      const Vec3d& normal = normals_[triangleOf(i)];
-      cosine = normal == Vec3d{} ? cosine : std::min(cosine, dot(normal, axis));
-      for (const std::uint32_t v : mesh_.triangles[triangleOf(i)]) {
-        const Vec3d p(mesh_.vertices[v]);
-        bounds.extend(mesh_.vertices[v]);
-        lowest = std::min(lowest, dot(axis, p));
-        highest = std::max(highest, dot(axis, p));
-        reach = std::max(reach, maxComponent(abs(p)));
-      }
-    }
-    part.support = {axis, -(lowest - 1e-14 * reach)};
-    part.thickness = highest - lowest + 4e-14 * reach;
-    return size > 0.0 ? std::max(-1.0, cosine - kRounding) : -1.0;
-  }
-
   const SurfaceMesh& mesh_;
   std::span<const Vec3d> normals_;
-  const PartTriangles& parts_;
+  PartTriangles& parts_;
   const std::uint32_t patch_triangles_, cluster_triangles_;
   const double min_cosine_;
   // These belong to the part that is being gathered.
   std::uint32_t begin_part_ = 0, size_ = 0;
   std::vector<std::uint32_t> patch_of_, cluster_of_;
   std::vector<std::uint32_t> in_patch_, in_cluster_;
+  std::vector<std::uint32_t> by_patch_;  // triangles, in the order of patches
 };
+
+// Sets where some triangles lie and which way they face. cornersOf(i): the three vertices of triangle i of
+// `count`. Part: a SurfaceCluster or a SurfacePatch. Returns the cosine of the greatest angle between normals
+// and that of the supporting plane, rounded down.
+template <typename CornersOf, typename Part>
+double measure(std::span<const Vec3f> vertices, std::uint32_t count, const CornersOf& cornersOf, Part& part,
+               Box& bounds) {
+  Vec3d axis{};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    axis += areaNormal(vertices, cornersOf(i));
+  }
+  const double size = length(axis);
+  axis = size > 0.0 ? axis / size : Vec3d{0.0, 0.0, 1.0};
+  double cosine = 1.0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest, reach = 0.0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t* const corners = cornersOf(i);
+    const Vec3d normal = unitNormal(vertices, corners);
+    cosine = normal == Vec3d{} ? cosine : std::min(cosine, dot(normal, axis));
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f& at = vertices[corners[k]];
+      const Vec3d p(at);
+      bounds.extend(at);
+      lowest = std::min(lowest, dot(axis, p));
+      highest = std::max(highest, dot(axis, p));
+      reach = std::max(reach, maxComponent(abs(p)));
+    }
+  }
+  part.support = {axis, -(lowest - 1e-14 * reach)};
+  part.thickness = highest - lowest + 4e-14 * reach;
+  return size > 0.0 ? std::max(-1.0, cosine - kRounding) : -1.0;
+}
+
+// The first part, patch, cluster and triangle of some parts.
+struct Place {
+  std::uint32_t part = 0, patch = 0, cluster = 0, triangle = 0;
+};
+
+// Fills the parts, patches and clusters of a set from a place on. by_patch: all triangles of the mesh in the
+// order in which they were gathered to patches. Each record is zero before it is filled, also between its
+// members, for sets are kept as the bytes that they are in memory.
+void writeDivision(const SceneView& scene, const SurfaceMesh& mesh, std::span<const std::uint32_t> by_patch,
+                   const Division& division, Place at, SurfaceSet& set) {
+  std::size_t patch_here = 0, cluster_here = 0;
+  for (const std::uint32_t patch_count : division.patch_counts) {
+    SurfacePart& part = set.parts[at.part];
+    part.first_patch = at.patch;
+    part.patch_count = patch_count;
+    const std::uint32_t first = by_patch[at.triangle];
+    const bool double_sided = scene.materialOf(scene.objects[mesh.objects[first]]).double_sided;
+    Box& part_bounds = set.part_bounds[at.part++];
+    for (std::uint32_t i = 0; i < patch_count; ++i) {
+      SurfacePatch& patch = *::new (&set.patches[at.patch]) SurfacePatch();
+      Box patch_bounds;
+      patch.first_cluster = at.cluster;
+      patch.cluster_count = division.cluster_counts[patch_here++];
+      patch.double_sided = double_sided;
+      const std::uint32_t first_triangle = at.triangle;
+      double cosine = 1.0;
+      for (std::uint32_t k = 0; k < patch.cluster_count; ++k) {
+        SurfaceCluster& cluster = *::new (&set.clusters[at.cluster]) SurfaceCluster();
+        Box bounds;
+        cluster.first_triangle = at.triangle;
+        cluster.triangle_count = division.sizes[cluster_here++];
+        cluster.double_sided = double_sided;
+        cosine = measure(
+            mesh.vertices, cluster.triangle_count,
+            [&](std::uint32_t t) { return &set.triangles[3 * std::size_t{at.triangle + t}]; }, cluster,
+            bounds);
+        at.triangle += cluster.triangle_count;
+        set.cluster_bounds[at.cluster++] = bounds;
+      }
+      if (patch.cluster_count == 1) {
+        patch.support = set.clusters[at.cluster - 1].support;
+        patch.thickness = set.clusters[at.cluster - 1].thickness;
+        patch_bounds = set.cluster_bounds[at.cluster - 1];
+      } else {
+        cosine = measure(
+            mesh.vertices, at.triangle - first_triangle,
+            [&](std::uint32_t t) { return mesh.triangles[by_patch[first_triangle + t]].data(); }, patch,
+            patch_bounds);
+      }
+      patch.cone_cosine = static_cast<float>(cosine - kRounding);
+      set.patch_bounds[at.patch++] = patch_bounds;
+      part_bounds.extend(patch_bounds);
+    }
+  }
+}
 
 // Consecutive parts with about as many triangles: the first part of each chunk, and one more.
 std::vector<std::uint32_t> chunksOf(std::span<const std::uint32_t> first_of_part) {
@@ -276,28 +316,13 @@ Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const 
   gathered.part_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
   gathered.cluster_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
   set.triangles = base::unsetVector<std::uint32_t>(3 * mesh.triangleCount());
-  set.parts.resize(parts.first.size() - 1);
-  set.part_bounds.resize(set.parts.size());
-  base::PartStore store;
-  std::vector<KeptChunk> chunks(first_part.size() - 1);
-  parallel_for(static_cast<std::uint32_t>(chunks.size()), [&](std::uint32_t begin, std::uint32_t end) {
-    Chunk chunk;
+  std::vector<Division> divisions(first_part.size() - 1);
+  parallel_for(static_cast<std::uint32_t>(divisions.size()), [&](std::uint32_t begin, std::uint32_t end) {
     PartDivider divider(mesh, normals, parts, settings);
     for (std::uint32_t c = begin; c < end; ++c) {
-      chunk.clear();
       for (std::uint32_t p = first_part[c]; p < first_part[c + 1]; ++p) {
-        const std::uint32_t first = parts.triangles[parts.first[p]];
-        SurfacePart& part = set.parts[p];
-        part.first_patch = static_cast<std::uint32_t>(chunk.patches.size());
-        divider.divide(p, scene.materialOf(scene.objects[mesh.objects[first]]).double_sided, chunk,
-                       set.triangles, gathered.cluster_of);
-        part.patch_count = static_cast<std::uint32_t>(chunk.patches.size()) - part.first_patch;
-        for (const Box& bounds : std::span(chunk.patch_bounds).subspan(part.first_patch)) {
-          set.part_bounds[p].extend(bounds);
-        }
+        divider.divide(p, divisions[c], set.triangles, gathered.cluster_of);
       }
-      chunks[c] = {store.keep(chunk.patches), store.keep(chunk.clusters), store.keep(chunk.patch_bounds),
-                   store.keep(chunk.cluster_bounds)};
     }
   });
 
@@ -305,31 +330,27 @@ Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const 
   normals = {};
   parts.place_of = {};
 
-  std::vector<std::uint32_t> first_patch(1, 0), first_cluster(1, 0);
-  for (const KeptChunk& chunk : chunks) {
-    first_patch.push_back(first_patch.back() + static_cast<std::uint32_t>(chunk.patches.size()));
-    first_cluster.push_back(first_cluster.back() + static_cast<std::uint32_t>(chunk.clusters.size()));
+  // Where each chunk begins, and one more.
+  std::vector<Place> places(1);
+  for (std::size_t c = 0; c < divisions.size(); ++c) {
+    const Place& last = places.back();
+    places.push_back({first_part[c + 1],
+                      last.patch + static_cast<std::uint32_t>(divisions[c].cluster_counts.size()),
+                      last.cluster + static_cast<std::uint32_t>(divisions[c].sizes.size()),
+                      parts.first[first_part[c + 1]]});
   }
-  set.patches = base::unsetVector<SurfacePatch>(first_patch.back());
-  set.patch_bounds = base::unsetVector<Box>(first_patch.back());
-  set.clusters = base::unsetVector<SurfaceCluster>(first_cluster.back());
-  set.cluster_bounds = base::unsetVector<Box>(first_cluster.back());
-  base::forEach(parallel_for, chunks.size(), [&](std::uint32_t c) {
-    const KeptChunk& chunk = chunks[c];
-    for (SurfacePatch& patch : chunk.patches) {
-      patch.first_cluster += first_cluster[c];
-    }
-    std::copy(chunk.patches.begin(), chunk.patches.end(), set.patches.begin() + first_patch[c]);
-    std::copy(chunk.clusters.begin(), chunk.clusters.end(), set.clusters.begin() + first_cluster[c]);
-    std::copy(chunk.patch_bounds.begin(), chunk.patch_bounds.end(),
-              set.patch_bounds.begin() + first_patch[c]);
-    std::copy(chunk.cluster_bounds.begin(), chunk.cluster_bounds.end(),
-              set.cluster_bounds.begin() + first_cluster[c]);
+  set.parts.resize(parts.first.size() - 1);
+  set.part_bounds.resize(set.parts.size());
+  set.patches = base::unsetVector<SurfacePatch>(places.back().patch);
+  set.patch_bounds = base::unsetVector<Box>(places.back().patch);
+  set.clusters = base::unsetVector<SurfaceCluster>(places.back().cluster);
+  set.cluster_bounds = base::unsetVector<Box>(places.back().cluster);
+  base::forEach(parallel_for, divisions.size(), [&](std::uint32_t c) {
+    writeDivision(scene, mesh, parts.triangles, divisions[c], places[c], set);
     for (std::uint32_t p = first_part[c]; p < first_part[c + 1]; ++p) {
-      set.parts[p].first_patch += first_patch[c];
       for (std::uint32_t i = parts.first[p]; i < parts.first[p + 1]; ++i) {
         gathered.part_of[parts.triangles[i]] = p;
-        gathered.cluster_of[parts.triangles[i]] += first_cluster[c];
+        gathered.cluster_of[parts.triangles[i]] += places[c].cluster;
       }
     }
   });
