@@ -158,21 +158,26 @@ void append(const BodyLists& part, OccluderSet& set) {
 }  // namespace
 
 void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
-  chains_.clear();
+  keys_.clear();
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    const FoundPolygon& polygon = *polygons[p];
-    const auto corners = static_cast<std::uint32_t>(polygon.corners.size());
-    const auto size = static_cast<std::uint32_t>(polygon.loop.size());
+    const auto corners = static_cast<std::uint32_t>(polygons[p]->corners.size());
+    std::uint32_t from = corners > 0 ? cornerOf(*polygons[p], corners - 1) : 0;
     for (std::uint32_t i = 0; i < corners; ++i) {
-      const std::uint32_t begin = polygon.corners[i], end = polygon.corners[i + 1 < corners ? i + 1 : 0];
-      const std::uint32_t from = polygon.loop[begin], to = polygon.loop[end];
-      chains_.push_back({std::uint64_t{std::min(from, to)} << 32 | std::max(from, to), p, begin,
-                         end > begin ? end - begin : end + size - begin});
+      const std::uint32_t to = cornerOf(*polygons[p], i), number = i > 0 ? i - 1 : corners - 1;
+      keys_.push_back(
+          {std::uint64_t{std::min(from, to)} << 32 | std::max(from, to), std::uint64_t{p} << 32 | number});
+      from = to;
     }
   }
-  std::sort(chains_.begin(), chains_.end(), [](const CornerChain& a, const CornerChain& b) {
-    return std::tie(a.key, a.polygon, a.begin) < std::tie(b.key, b.polygon, b.begin);
-  });
+  sorter_.sort(keys_);
+  chains_.clear();
+  for (const base::SortKey& key : keys_) {
+    const auto p = static_cast<std::uint32_t>(key.second >> 32), i = static_cast<std::uint32_t>(key.second);
+    const std::span<const std::uint32_t> corners = polygons[p]->corners;
+    const std::uint32_t begin = corners[i], end = corners[i + 1 < corners.size() ? i + 1 : 0];
+    const auto size = static_cast<std::uint32_t>(polygons[p]->loop.size());
+    chains_.push_back({key.first, p, begin, end > begin ? end - begin : end + size - begin});
+  }
   mated_.assign(polygons.size(), 1);
   for (std::size_t first = 0, last = 0; first < chains_.size(); first = last) {
     while (last < chains_.size() && chains_[last].key == chains_[first].key) {

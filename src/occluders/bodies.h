@@ -7,9 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
 #include "src/base/rows.h"
+#include "src/base/sort_keys.h"
 #include "src/base/union_find.h"
 #include "src/occluders/assemble_set.h"
 #include "src/occluders/polygon_merge.h"
@@ -28,12 +30,14 @@ class ChainMates {
  public:
   void find(std::span<const FoundPolygon* const> polygons);
 
-  // By key, of equal ones by polygon.
+  // By key, of equal ones by polygon and along its boundary.
   std::span<const CornerChain> chains() const { return chains_; }
   // Whether each chain of a polygon has one partner, and runs against it.
   bool allMated(std::uint32_t polygon) const { return mated_[polygon] != 0; }
 
  private:
+  base::KeySorter sorter_;
+  LargeVector<base::SortKey> keys_;  // of chains: their key, polygon and first corner
   std::vector<CornerChain> chains_;
   std::vector<std::uint8_t> mated_;  // by polygon
 };

@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "src/base/rows.h"
-#include "src/base/scratch_array.h"
-#include "src/base/sort_keys.h"
+#include "src/base/parallel_rows.h"
 #include "src/occluders/edge_vertices.h"
 #include "src/occluders/occluder_limits.h"
 
 namespace sightline::occluders {
 namespace {
+
+constexpr std::size_t kLowEndsOfPart = 16384;
 
 std::uint32_t nextIn(std::span<const std::uint32_t> loop, std::size_t at) {
   return loop[at + 1 < loop.size() ? at + 1 : 0];
@@ -20,59 +21,71 @@ std::uint32_t nextIn(std::span<const std::uint32_t> loop, std::size_t at) {
 
 // The mesh edges of outlines that run one way more often than the other, ascending. Bodies, the edges of
 // which cancel each other, are left out.
-std::vector<MeshEdge> openEdges(std::span<const RankedPolygon> polygons, const ParallelFor& parallel_for) {
-  const auto isOpen = [](const RankedPolygon& ranked) {
-    return ranked.polygon->body == FoundPolygon::kNoBody;
-  };
-  std::size_t count = 0;
-  for (const RankedPolygon& ranked : polygons) {
-    count += isOpen(ranked) ? ranked.polygon->loop.size() : 0;
-  }
-  // Halves of edges, and whether they run from the lower vertex to the higher one.
-  LargeVector<base::SortKey> halves = base::unsetVector<base::SortKey>(count);
-  std::size_t next = 0;
-  for (const RankedPolygon& ranked : polygons) {
-    const std::span<const std::uint32_t> loop = ranked.polygon->loop;
-    for (std::size_t i = 0; i < loop.size() && isOpen(ranked); ++i) {
-      const MeshEdge edge = meshEdge(loop[i], nextIn(loop, i));
-      halves[next++] = {std::uint64_t{edge.low} << 32 | edge.high, loop[i] == edge.low ? 1u : 0u};
+std::vector<MeshEdge> openEdges(std::size_t position_count, std::span<const RankedPolygon> polygons,
+                                const ParallelFor& parallel_for) {
+  // Half an edge: the higher vertex, doubled, plus 1 if it runs from there to the lower one.
+  base::Rows<std::uint64_t> by_low;
+  base::groupIntoRows(parallel_for, position_count, polygons.size(), by_low.first(), by_low.all(),
+                      [&](std::size_t begin, std::size_t end, auto&& pair) {
+                        for (std::size_t p = begin; p < end; ++p) {
+                          const FoundPolygon& polygon = *polygons[p].polygon;
+                          if (polygon.body != FoundPolygon::kNoBody) {
+                            continue;
+                          }
+                          std::uint32_t from = polygon.loop.back();
+                          for (const std::uint32_t to : polygon.loop) {
+                            pair(std::min(from, to),
+                                 std::uint64_t{std::max(from, to)} << 1 | (from < to ? 0u : 1u));
+                            from = to;
+                          }
+                        }
+                      });
+  const base::Parts parts(position_count, kLowEndsOfPart);
+  std::vector<std::vector<MeshEdge>> of_part(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    for (std::size_t low = begin; low < end; ++low) {
+      const std::span<std::uint64_t> halves = by_low[low];
+      std::sort(halves.begin(), halves.end());
+      for (std::size_t i = 0; i < halves.size();) {
+        const std::uint64_t high = halves[i] >> 1;
+        int value = 0;
+        for (; i < halves.size() && halves[i] >> 1 == high; ++i) {
+          value += (halves[i] & 1) == 0 ? 1 : -1;
+        }
+        if (value != 0) {
+          of_part[part].push_back({static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high)});
+        }
+      }
     }
-  }
-  base::KeySorter().sort(halves, parallel_for);
+  });
   std::vector<MeshEdge> open;
-  for (std::size_t i = 0; i < halves.size();) {
-    const std::uint64_t edge = halves[i].first;
-    int value = 0;
-    for (; i < halves.size() && halves[i].first == edge; ++i) {
-      value += halves[i].second == 1 ? 1 : -1;
-    }
-    if (value != 0) {
-      open.push_back({static_cast<std::uint32_t>(edge >> 32), static_cast<std::uint32_t>(edge)});
-    }
+  for (const std::vector<MeshEdge>& part : of_part) {
+    open.insert(open.end(), part.begin(), part.end());
   }
   return open;
 }
 
 // Edges that others end on, ascending, and where.
 struct DividedEdges {
-  std::vector<MeshEdge> edges;
-  base::Rows<std::uint32_t> vertices;  // by edge, from its lower vertex on
-  std::vector<bool> begins;            // by vertex: it is the lower one of an edge
-  std::vector<bool> left_whole;        // by edge
+  std::vector<std::uint32_t> first_of_low;  // by lower vertex, and one more: the first of its edges
+  std::vector<std::uint32_t> high;          // by edge
+  base::Rows<std::uint32_t> vertices;       // by edge, from its lower vertex on
+  std::vector<bool> left_whole;             // by edge
 
+  std::size_t count() const { return high.size(); }
   // The number of an edge; as many as there are if it is not among them.
   std::size_t find(const MeshEdge& edge) const {
-    if (!begins[edge.low]) {
-      return edges.size();
+    for (std::uint32_t i = first_of_low[edge.low]; i < first_of_low[edge.low + 1]; ++i) {
+      if (high[i] == edge.high) {
+        return i;
+      }
     }
-    const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
-    return found != edges.end() && *found == edge ? static_cast<std::size_t>(found - edges.begin())
-                                                  : edges.size();
+    return count();
   }
   // The vertices that divide an edge.
   std::span<const std::uint32_t> on(const MeshEdge& edge) const {
     const std::size_t number = find(edge);
-    return number < edges.size() && !left_whole[number] ? vertices[number] : std::span<const std::uint32_t>();
+    return number < count() && !left_whole[number] ? vertices[number] : std::span<const std::uint32_t>();
   }
 };
 
@@ -80,26 +93,27 @@ DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const Mesh
                           const ParallelFor& parallel_for) {
   const base::Rows<std::uint32_t> on_edges = verticesOnEdges(positions, open, parallel_for);
   DividedEdges divided;
-  divided.begins.resize(positions.size());
+  divided.first_of_low.resize(positions.size() + 1);
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (on_edges[i].empty()) {
       continue;
     }
-    divided.edges.push_back(open[i]);
-    divided.begins[open[i].low] = true;
+    ++divided.first_of_low[open[i].low + 1];
+    divided.high.push_back(open[i].high);
     for (const std::uint32_t vertex : on_edges[i]) {
       divided.vertices.add(vertex);
     }
     divided.vertices.endRow();
   }
-  divided.left_whole.resize(divided.edges.size());
+  std::partial_sum(divided.first_of_low.begin(), divided.first_of_low.end(), divided.first_of_low.begin());
+  divided.left_whole.resize(divided.count());
   return divided;
 }
 
 // An edge of a polygon that has too many mesh edges joins nothing at all, so those of such an edge are left
 // whole, for all polygons.
 void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& edges) {
-  std::vector<bool> left_whole(edges.edges.size());
+  std::vector<bool> left_whole(edges.count());
   std::vector<std::size_t> along;  // divided edges of a polygon's edge
   for (const RankedPolygon& ranked : polygons) {
     const std::span<const std::uint32_t> loop = ranked.polygon->loop, corners = ranked.polygon->corners;
@@ -109,7 +123,7 @@ void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& 
       for (std::size_t i = corners[c]; pieces == 0 || i != nextIn(corners, c);) {
         const std::size_t number = edges.find(meshEdge(loop[i], nextIn(loop, i)));
         pieces += 1;
-        if (number < edges.edges.size()) {
+        if (number < edges.count()) {
           pieces += edges.vertices[number].size();
           along.push_back(number);
         }
@@ -127,8 +141,9 @@ void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& 
 
 void divideOutlines(std::span<const Vec3f> positions, const ParallelFor& parallel_for,
                     std::span<RankedPolygon> polygons, DividedOutlines& divided) {
-  DividedEdges edges = dividedEdges(positions, openEdges(polygons, parallel_for), parallel_for);
-  if (edges.edges.empty()) {
+  DividedEdges edges =
+      dividedEdges(positions, openEdges(positions.size(), polygons, parallel_for), parallel_for);
+  if (edges.count() == 0) {
     return;
   }
   leaveLongEdgesWhole(polygons, edges);

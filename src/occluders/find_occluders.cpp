@@ -194,6 +194,11 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   const std::vector<std::uint32_t> first_of_part = partsOf(scene.objects);
   std::vector<PartResult> parts(first_of_part.size() - 1);
   base::forEach(parallel_for, parts.size(), [&](std::uint32_t part) {
+    std::size_t triangles = 0;
+    for (std::uint32_t o = first_of_part[part]; o < first_of_part[part + 1]; ++o) {
+      triangles += scene.objects[o].triangleCount();
+    }
+    parts[part].polygons.reserve(std::min(triangles, 2 * kTrianglesOfPart));
     ObjectSearch search(scene, max_vertices, parts[part]);
     for (std::uint32_t o = first_of_part[part]; o < first_of_part[part + 1]; ++o) {
       search.search(scene.objects[o]);

@@ -9,6 +9,8 @@
 
 #include "src/occluders/links.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -47,18 +49,26 @@ class Linker {
   // Fills edges, lines and neighbours, and adds to the slack of occluders.
   void run() {
     numberEdges();
+
     groupUses();
+
     findSharedEdges();
+
     countLists();
+
     placeLists();
+
     writeLines();
+
     writeNeighbours();
+
     shareSlack();
   }
 
  private:
   enum class EdgeKind : std::uint8_t {
     kOneMeshEdge,     // and so is each edge that shares it
+    kFirstOnLine,     // the same, and of the edges that share it the one with the lowest rank
     kSeveral,         // it, or one that shares a mesh edge with it, has several mesh edges
     kNeverWatertight  // of those
   };
@@ -68,9 +78,10 @@ class Linker {
   };
   // Edges that share mesh edges, directly or by others. Some of them have several mesh edges.
   struct SharedEdge {
-    std::size_t begin = 0, end = 0;  // in by_shared_edge_
-    bool one_line = true;            // false: each edge has a line of its own, and none is watertight
-    double deviation = 0.0;          // of mesh vertices from the line
+    std::uint32_t begin = 0, end = 0;  // in by_shared_edge_
+    bool one_line = true;              // false: each edge has a line of its own, and none is watertight
+    float deviation = 0.0f;            // of mesh vertices from the line, rounded up
+    std::array<Vec3f, 2> line{};       // of all, if they have one
   };
 
   const FoundPolygon& polygonOf(std::uint32_t edge) const { return *polygons_[place_of_edge_[edge]].polygon; }
@@ -127,9 +138,9 @@ class Linker {
     });
     std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
     std::partial_sum(first_use_.begin(), first_use_.end(), first_use_.begin());
-    place_of_edge_.resize(first_edge_.back());
-    kind_.resize(first_edge_.back());
-    edge_of_use_.resize(first_use_.back());
+    place_of_edge_ = base::unsetVector<std::uint32_t>(first_edge_.back());
+    kind_ = base::unsetVector<EdgeKind>(first_edge_.back());
+    edge_of_use_ = base::unsetVector<std::uint32_t>(first_use_.back());
     set_.edges.resize(first_edge_.back());
     parts.run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -185,9 +196,27 @@ class Linker {
         .run(parallel_for_,
              [&](std::size_t, std::size_t begin, std::size_t end) { forEachMeshEdge(begin, end, visit); });
   }
-  bool isOneMeshEdge(std::span<const Use> users) const {
-    return kind_[edge_of_use_[users[0].use]] == EdgeKind::kOneMeshEdge;
+  // Calls visit(edge, edge of the set) for all edges. Those of the set lie anywhere in memory, by rank, so
+  // they are asked for early.
+  template <typename Visit>
+  void forEachEdgeOfSet(Visit visit) const {
+    constexpr std::size_t kAhead = 8;
+    base::Parts(polygons_.size(), kPolygonsOfPart)
+        .run(parallel_for_, [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < end) {
+              hwy::Prefetch(&set_.edges[first_vertex_[i + kAhead]]);
+            }
+            for (std::uint32_t edge = first_edge_[i]; edge < first_edge_[i + 1]; ++edge) {
+              visit(edge, set_.edges[first_vertex_[i] + edge - first_edge_[i]]);
+            }
+          }
+        });
   }
+  bool isOneMeshEdge(std::uint32_t edge) const {
+    return kind_[edge] == EdgeKind::kOneMeshEdge || kind_[edge] == EdgeKind::kFirstOnLine;
+  }
+  bool isOneMeshEdge(std::span<const Use> users) const { return isOneMeshEdge(edge_of_use_[users[0].use]); }
 
   // Finds the edges that are not just one mesh edge, and which of them belong together.
   void findSharedEdges() {
@@ -222,11 +251,11 @@ class Linker {
       key = {std::uint64_t{classes.root(edge)}, key.second << 32 | edge};
     }
     base::KeySorter().sort(by_shared_edge_, parallel_for_);
-    for (std::size_t i = 0, end = 0; i < by_shared_edge_.size(); i = end) {
+    for (std::uint32_t i = 0, end = 0; i < by_shared_edge_.size(); i = end) {
       while (end < by_shared_edge_.size() && by_shared_edge_[end].first == by_shared_edge_[i].first) {
         ++end;
       }
-      shared_edges_.push_back({i, end, true, 0.0});
+      shared_edges_.push_back({i, end, true, 0.0f, {}});
     }
   }
 
@@ -280,16 +309,17 @@ class Linker {
   // Chooses the line of a shared edge. Where a vertex is farther from it than rounding explains, each
   // occluder edge keeps a line of its own, and the shared edge is not watertight.
   void judge(SharedEdge& shared) const {
-    const std::array<Vec3f, 2> line = lineOf(shared);
+    shared.line = lineOf(shared);
+    const Vec3d from(shared.line[0]), to(shared.line[1]);
     double deviation = 0.0, largest = 0.0;
     forEachEdge(shared, [&](std::uint32_t edge) {
       forEachMeshEdgeEnd(edge, [&](const Vec3f& p) {
-        deviation = std::max(deviation, distanceToLine(Vec3d(p), Vec3d(line[0]), Vec3d(line[1])));
+        deviation = std::max(deviation, distanceToLine(Vec3d(p), from, to));
         largest = std::max(largest, static_cast<double>(maxComponent(abs(p))));
       });
     });
     shared.one_line = deviation <= 4.0 * roundingTolerance(largest);
-    shared.deviation = shared.one_line ? deviation : 0.0;
+    shared.deviation = shared.one_line ? static_cast<float>(deviation * 1.001) : 0.0f;
   }
 
   // The users have a mesh edge that is all of each of their edges. Returns the edge with the lowest rank.
@@ -307,10 +337,13 @@ class Linker {
   void countLists() {
     forEachMeshEdge([this](std::span<const Use> users) {
       if (isOneMeshEdge(users)) {
-        for (const Use& use : users) {
-          set_.edges[rankOf(edge_of_use_[use.use])].mesh_edge_count = 1;
-        }
-        set_.edges[rankOf(firstByRank(users))].line = 1;
+        kind_[firstByRank(users)] = EdgeKind::kFirstOnLine;
+      }
+    });
+    forEachEdgeOfSet([this](std::uint32_t edge, OccluderEdge& counts) {
+      if (isOneMeshEdge(edge)) {
+        counts.mesh_edge_count = 1;
+        counts.line = kind_[edge] == EdgeKind::kFirstOnLine ? 1 : 0;
       }
     });
     base::forEach(parallel_for_, shared_edges_.size(), [this](std::uint32_t number) {
@@ -330,7 +363,7 @@ class Linker {
     for (const SharedEdge& shared : shared_edges_) {
       forEachEdge(shared, [&](std::uint32_t edge) {
         Occluder& occluder = set_.occluders[polygons_[place_of_edge_[edge]].id.value];
-        occluder.slack = std::max(occluder.slack, static_cast<float>(shared.deviation * 1.001));
+        occluder.slack = std::max(occluder.slack, shared.deviation);
       });
     }
   }
@@ -346,20 +379,33 @@ class Linker {
   }
 
   void writeLines() {
-    forEachMeshEdge([this](std::span<const Use> users) {
+    LargeVector<std::uint32_t> line_of = base::unsetVector<std::uint32_t>(kind_.size());  // by edge
+    forEachEdgeOfSet([&](std::uint32_t edge, const OccluderEdge& counted) {
+      if (kind_[edge] == EdgeKind::kFirstOnLine) {
+        line_of[edge] = counted.line;
+        set_.lines[counted.line] = ownLine(edge);
+      }
+    });
+    forEachMeshEdge([&](std::span<const Use> users) {
       if (isOneMeshEdge(users)) {
-        const std::uint32_t first = firstByRank(users), line = set_.edges[rankOf(first)].line;
-        set_.lines[line] = ownLine(first);
+        const auto first = std::find_if(users.begin(), users.end(), [this](const Use& use) {
+          return kind_[edge_of_use_[use.use]] == EdgeKind::kFirstOnLine;
+        });
         for (const Use& use : users) {
-          set_.edges[rankOf(edge_of_use_[use.use])].line = line;
+          line_of[edge_of_use_[use.use]] = line_of[edge_of_use_[first->use]];
         }
+      }
+    });
+    forEachEdgeOfSet([&](std::uint32_t edge, OccluderEdge& written) {
+      if (kind_[edge] == EdgeKind::kOneMeshEdge) {
+        written.line = line_of[edge];
       }
     });
     base::forEach(parallel_for_, shared_edges_.size(), [this](std::uint32_t number) {
       const SharedEdge& shared = shared_edges_[number];
       std::uint32_t line = set_.edges[rankOf(edgeAt(shared.begin))].line;
       if (shared.one_line) {
-        set_.lines[line] = lineOf(shared);
+        set_.lines[line] = shared.line;
       }
       forEachEdge(shared, [&](std::uint32_t edge) {
         OccluderEdge& written = set_.edges[rankOf(edge)];
@@ -383,7 +429,11 @@ class Linker {
 
   void writeNeighbours() {
     LargeVector<std::uint8_t> joins(polygons_.size());  // by place
+    constexpr std::uint32_t kAhead = 16;                // occluders lie by rank, too
     base::forEach(parallel_for_, polygons_.size(), [&](std::uint32_t i) {
+      if (i + kAhead < polygons_.size()) {
+        hwy::Prefetch(&set_.occluders[polygons_[i + kAhead].id.value].watertight_edges);
+      }
       joins[i] = set_.occluders[polygons_[i].id.value].watertight_edges ? 1 : 0;
     });
     LargeVector<std::uint32_t> first;
@@ -396,7 +446,7 @@ class Linker {
                                 continue;
                               }
                               const std::uint32_t mesh_edge =
-                                  kind_[edge] == EdgeKind::kOneMeshEdge ? 0 : a.use - firstUse(edge);
+                                  isOneMeshEdge(edge) ? 0 : a.use - firstUse(edge);
                               for (const Use& b : users) {
                                 const std::uint32_t other = place_of_edge_[edge_of_use_[b.use]];
                                 if (other != place && joins[other] != 0) {

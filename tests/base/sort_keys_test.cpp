@@ -22,7 +22,7 @@ LargeVector<SortKey> someKeys(std::size_t count, int bits, int shift, std::uint6
 
 TEST(SortKeys, SortsByTheFirstNumberAndThenByTheSecond) {
   KeySorter sorter;
-  for (const std::size_t count : {0u, 1u, 2u, 64u, 65u, 1000u, 100000u}) {
+  for (const std::size_t count : {0u, 1u, 2u, 24u, 25u, 64u, 65u, 1000u, 100000u}) {
     for (const int bits : {0, 1, 5, 20, 40}) {
       for (const int shift : {0, 13, 24}) {
         LargeVector<SortKey> keys = someKeys(count, bits, shift, count + static_cast<std::size_t>(bits));
@@ -48,6 +48,21 @@ TEST(SortKeys, SortsKeysThatFillTheWholeRange) {
 TEST(SortKeys, SortsKeysOfWhichAllButOneAreClose) {
   LargeVector<SortKey> keys = someKeys(5000, 10, 0, 2);
   keys.push_back({std::uint64_t{1} << 60, 0});
+  LargeVector<SortKey> expected = keys;
+  std::sort(expected.begin(), expected.end());
+  KeySorter().sort(keys);
+  EXPECT_EQ(keys, expected);
+}
+
+// Half of each range is empty but for one key, so that buckets are divided again and again.
+TEST(SortKeys, SortsKeysThatCrowdTowardsZero) {
+  std::mt19937_64 random(4);
+  LargeVector<SortKey> keys;
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint64_t bits = random();
+    keys.push_back({bits >> (random() % 64), random() % 4});
+    keys.push_back({std::uint64_t{1} << (i % 64), random() % 4});
+  }
   LargeVector<SortKey> expected = keys;
   std::sort(expected.begin(), expected.end());
   KeySorter().sort(keys);
