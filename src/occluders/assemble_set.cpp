@@ -16,11 +16,12 @@ namespace {
 // to the shared edge.
 bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   constexpr double kSine = 0.052;
-  Vec3d before = normalized(Vec3d(corners.front()) - Vec3d(corners.back()));
+  Vec3d before = Vec3d(corners.front()) - Vec3d(corners.back());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3f& next = corners[i + 1 < corners.size() ? i + 1 : 0];
-    const Vec3d after = normalized(Vec3d(next) - Vec3d(corners[i]));
-    if (dot(before, after) < 0.0 && length(cross(before, after)) < kSine) {
+    const Vec3d after = Vec3d(next) - Vec3d(corners[i]), across = cross(before, after);
+    if (dot(before, after) < 0.0 &&
+        dot(across, across) < kSine * kSine * dot(before, before) * dot(after, after)) {
       return false;
     }
     before = after;
@@ -86,21 +87,18 @@ LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
 
 // Lists, for each object, the occluders for which listed(id) is true, in the order of their ids.
 template <typename Listed>
-void listByObject(const OccluderSet& set, std::span<const RankedPolygon> polygons,
-                  const ParallelFor& parallel_for, const Listed& listed, LargeVector<std::uint32_t>& first,
-                  LargeVector<OccluderId>& ids) {
-  base::groupIntoRows(parallel_for, set.objects.size(), polygons.size(), first, ids,
+void listByObject(const OccluderSet& set, const ParallelFor& parallel_for, const Listed& listed,
+                  LargeVector<std::uint32_t>& first, LargeVector<OccluderId>& ids) {
+  base::groupIntoRows(parallel_for, set.objects.size(), set.occluders.size(), first, ids,
                       [&](std::size_t begin, std::size_t end, auto&& pair) {
                         for (std::size_t i = begin; i < end; ++i) {
-                          const std::size_t place = set.placeOf(polygons[i].object);
-                          if (place < set.objects.size() && listed(polygons[i].id)) {
-                            pair(place, polygons[i].id);
+                          const std::size_t place = set.placeOf(set.occluders[i].object);
+                          const auto id = OccluderId(i);
+                          if (place < set.objects.size() && listed(id)) {
+                            pair(place, id);
                           }
                         }
                       });
-  base::forEach(parallel_for, set.objects.size(), [&](std::uint32_t object) {
-    std::sort(ids.begin() + first[object], ids.begin() + first[object + 1]);
-  });
 }
 
 }  // namespace
@@ -111,12 +109,12 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
   linkEdges(positions, polygons, std::move(first_vertex), parallel_for, set);
   assembleBodies(positions, polygons, parallel_for, set);
   listByObject(
-      set, polygons, parallel_for, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
+      set, parallel_for, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
   const auto stands_for_all = [&](OccluderId id) {
     const OccluderBody* body = set.bodyOf(id);
     return body == nullptr || set.facesOf(*body).front().occluder == id;
   };
-  listByObject(set, polygons, parallel_for, stands_for_all, set.first_unit_of_object, set.unit_of_object);
+  listByObject(set, parallel_for, stands_for_all, set.first_unit_of_object, set.unit_of_object);
 }
 
 }  // namespace sightline::occluders

@@ -32,10 +32,8 @@ void PatchFinder::findUsable(std::span<const std::uint32_t> indices, bool double
   };
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const std::uint32_t* t = &indices[i];
-    double longest = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      longest = std::max(longest, length(at(t[k]) - at(t[(k + 1) % 3])));
-    }
+    const Vec3d ab = at(t[1]) - at(t[0]), bc = at(t[2]) - at(t[1]), ca = at(t[0]) - at(t[2]);
+    const double longest = std::sqrt(std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)}));
     if (length(doubleAreaNormal(t)) > 4.0 * tolerance_ * longest) {
       PatchTriangle key{t[0], t[1], t[2]};
       if (double_sided) {
