@@ -69,10 +69,13 @@ class AxisLines {
  public:
   // In the order of the lines, along each of them.
   struct Entry {
-    float u = 0.0f, v = 0.0f, along = 0.0f;
+    std::uint64_t line = 0;  // the bits of the two coordinates
+    float along = 0.0f;
     std::uint32_t vertex = 0;
     friend bool operator<(const Entry& a, const Entry& b) {
-      return std::tie(a.u, a.v, a.along, a.vertex) < std::tie(b.u, b.v, b.along, b.vertex);
+      return a.line != b.line     ? a.line < b.line
+             : a.along != b.along ? a.along < b.along
+                                  : a.vertex < b.vertex;
     }
   };
 
@@ -106,20 +109,22 @@ class AxisLines {
 
  private:
   Entry entryOf(const Vec3f& p, std::uint32_t vertex) const {
-    return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3], p[axis_], vertex};
+    return {std::uint64_t{bitsOf(p[(axis_ + 1) % 3])} << 32 | bitsOf(p[(axis_ + 2) % 3]), p[axis_], vertex};
   }
   // Adding zero turns -0 into +0, so that equal coordinates have equal bits.
+  static std::uint32_t bitsOf(float coordinate) { return std::bit_cast<std::uint32_t>(coordinate + 0.0f); }
   std::size_t rowOf(const Entry& entry) const {
-    return static_cast<std::size_t>(
-        base::mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(entry.u + 0.0f)} << 32 |
-                      std::bit_cast<std::uint32_t>(entry.v + 0.0f)) >>
-        shift_);
+    return static_cast<std::size_t>(base::mixBits(entry.line) >> shift_);
   }
-  // Those of the line of `low` that come after it and before `high`.
+  // Those of the line of `low` that come after it and before `high`, or more than kMostBends of them.
   std::span<const Entry> within(const Entry& low, const Entry& high) const {
     const std::span<const Entry> row = rows_[rowOf(low)];
     const auto begin = std::lower_bound(row.begin(), row.end(), low);
-    return {begin, std::lower_bound(begin, row.end(), high)};
+    auto end = begin;  // few lie there, so each is looked at
+    while (end != row.end() && *end < high && static_cast<std::size_t>(end - begin) <= kMostBends) {
+      ++end;
+    }
+    return {begin, end};
   }
 
   int axis_, shift_;
@@ -337,7 +342,7 @@ class EdgeSearch {
     const Vec3f &low = at(edge.low), &high = at(edge.high);
     const bool up = low[axis] < high[axis];
     const auto between = lines_[static_cast<std::size_t>(axis)].between(up ? low : high, up ? high : low);
-    for (const AxisLines::Entry& entry : between.first(std::min(between.size(), kMostBends + 1))) {
+    for (const AxisLines::Entry& entry : between) {
       found.push_back({up ? entry.along : -entry.along, entry.vertex});
     }
   }

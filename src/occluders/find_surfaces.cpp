@@ -155,7 +155,6 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
     occluders::divideEdges(mesh, parallel_for);
   }
   occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
-  mesh.forgetGiven();
   listByObject(mesh, gathered.part_of, scene.objects.size(), parallel_for, set);
   gathered.part_of = {};
   occluders::findChains(mesh, gathered.cluster_of, parallel_for, set);

@@ -307,7 +307,7 @@ std::vector<std::uint32_t> chunksOf(std::span<const std::uint32_t> first_of_part
 
 }  // namespace
 
-Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const SurfaceSettings& settings,
+Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const SurfaceSettings& settings,
                          const ParallelFor& parallel_for, SurfaceSet& set) {
   LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
   PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
@@ -329,6 +329,7 @@ Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const 
   // Their memory is of use to what follows.
   normals = {};
   parts.place_of = {};
+  mesh.forgetNeighbours();
 
   // Where each chunk begins, and one more.
   std::vector<Place> places(1);

@@ -17,8 +17,9 @@ struct Gathered {
   LargeVector<std::uint32_t> part_of, cluster_of;
 };
 
-// Fills the parts, patches, clusters and triangles of a set, but for chains and edge counts.
-Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const SurfaceSettings& settings,
+// Fills the parts, patches, clusters and triangles of a set, but for chains and edge counts. Frees what the
+// mesh has for it alone.
+Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const SurfaceSettings& settings,
                          const ParallelFor& parallel_for, SurfaceSet& set);
 
 }  // namespace sightline::occluders

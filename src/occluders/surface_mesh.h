@@ -54,8 +54,9 @@ struct SurfaceMesh {
     const std::uint32_t from = triangle[number], to = triangle[number == 2 ? 0 : number + 1];
     return side.value() > 0 ? std::array{from, to} : std::array{to, from};
   }
-  // Frees what only meetAtJunction() reads, which is not to be called afterwards.
-  void forgetGiven() {
+  // Frees what only forEachBeyond() and meetAtJunction() read, which are not to be called afterwards.
+  void forgetNeighbours() {
+    LargeVector<std::uint32_t>().swap(beyond);
     LargeVector<std::uint32_t>().swap(source);
     LargeVector<std::array<std::uint32_t, 3>>().swap(given);
   }
