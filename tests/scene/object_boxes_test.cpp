@@ -1,6 +1,7 @@
 #include "sightline/scene/object_boxes.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -214,6 +215,135 @@ TEST(ObjectBoxes, HoldAllOfRandomShapes) {
     boxes += found.boxes.size();
   }
   EXPECT_GT(boxes, 1000u);
+}
+
+// What of a polygon lies in no box: it is cut at the sides of one box after the other, each of which is wider
+// by `slack` than it is, so that nothing may remain.
+bool isCovered(std::vector<Vec3d> polygon, std::span<const Box> boxes, double slack) {
+  if (boxes.empty()) {
+    return false;
+  }
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const auto depth = [&](const Vec3d& p) {  // in the box
+      return side % 2 == 0 ? p[axis] - (boxes[0].min[axis] - slack) : boxes[0].max[axis] + slack - p[axis];
+    };
+    std::vector<Vec3d> inside, outside;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double da = depth(a), db = depth(b);
+      (da >= 0.0 ? inside : outside).push_back(a);
+      if ((da >= 0.0) != (db >= 0.0)) {
+        const Vec3d crossing = a + (b - a) * (da / (da - db));
+        inside.push_back(crossing);
+        outside.push_back(crossing);
+      }
+    }
+    if (!outside.empty() && !isCovered(std::move(outside), boxes.subspan(1), slack)) {
+      return false;
+    }
+    if (inside.empty()) {
+      return true;
+    }
+    polygon = std::move(inside);
+  }
+  return true;
+}
+
+TEST(ObjectBoxes, LeaveNoPartOfAMeshUncovered) {
+  std::size_t boxes = 0;
+  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> at(-50.0f, 50.0f), turn(-1.0f, 1.0f);
+    Shapes shapes;
+    // Sheets, tubes and spheres of many triangles, and soups of some; turned, so that nothing is parallel.
+    const Vec3f u(turn(random), turn(random), turn(random)), v(turn(random), turn(random), turn(random)),
+        w(turn(random), turn(random), turn(random));
+    const int steps = 2 + static_cast<int>(random() % 24);
+    const auto point = [&](int i, int j) {
+      const float a = 6.2831853f * static_cast<float>(i) / static_cast<float>(steps);
+      const float b = 3.1415927f * static_cast<float>(j) / static_cast<float>(steps);
+      const float x = seed % 3 == 0 ? a : std::cos(a) * (seed % 3 == 1 ? 1.0f : std::sin(b));
+      const float y = seed % 3 == 0 ? std::sin(a) : std::sin(a) * (seed % 3 == 1 ? 1.0f : std::sin(b));
+      return u * (10.0f * x) + v * (10.0f * y) + w * (seed % 3 == 2 ? 20.0f * std::cos(b) : 8.0f * b);
+    };
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps; ++j) {
+        shapes.addTriangle(point(i, j), point(i + 1, j), point(i + 1, j + 1));
+        shapes.addTriangle(point(i, j), point(i + 1, j + 1), point(i, j + 1));
+      }
+    }
+    shapes.endObject();
+    shapes.addTriangles(1 + static_cast<int>(random() % 20), [&] { return at(random); });
+    shapes.endObject();
+    const SceneView scene = shapes.scene.view();
+    const ObjectBoxes found = findObjectBoxes(scene, {.min_saving = seed % 2 == 0 ? 0.0 : 0.005});
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      const std::span<const Box> of_object = found.of(ObjectId(o));
+      const std::span<const std::uint32_t> indices = scene.indicesOf(scene.objects[o]);
+      for (std::size_t i = 0; !of_object.empty() && i < indices.size(); i += 3) {
+        const std::vector<Vec3d> triangle{Vec3d(scene.positions[indices[i]]),
+                                          Vec3d(scene.positions[indices[i + 1]]),
+                                          Vec3d(scene.positions[indices[i + 2]])};
+        ASSERT_TRUE(isCovered(triangle, of_object, 1e-10)) << "seed " << seed << ", object " << o;
+        EXPECT_FALSE(isCovered(triangle, {}, 1e-10));
+      }
+      EXPECT_TRUE(of_object.empty() || areBoxesOf(of_object, scene.objects[o].bounds));
+    }
+    boxes += found.boxes.size();
+  }
+  EXPECT_GT(boxes, 1000u);
+}
+
+TEST(ObjectBoxes, LeaveNoPartOfASliverUncovered) {
+  std::size_t boxes = 0;
+  for (std::uint32_t seed = 0; seed < 3000; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> at(-50.0f, 50.0f), along(0.0f, 1.0f);
+    Shapes shapes;
+    for (std::uint32_t t = 0; t < 1 + seed % 3; ++t) {
+      // Corners on a line but for rounding, some of them next to each other, some in a plane across an axis.
+      Vec3f a(at(random), at(random), at(random)), b(at(random), at(random), at(random));
+      const int axis = static_cast<int>(random() % 4);
+      if (axis < 3) {
+        b[axis] = random() % 2 == 0 ? a[axis] : std::nextafter(a[axis], 100.0f);
+      }
+      Vec3f c = a + (b - a) * (random() % 4 == 0 ? 0.0f : along(random));
+      c.y = random() % 2 == 0 ? c.y : std::nextafter(c.y, 100.0f);
+      shapes.addTriangle(a, b, c);
+    }
+    shapes.endObject();
+    const ObjectBoxes found = findObjectBoxes(shapes.scene.view(), {.min_saving = 0.0});
+    const std::span<const Box> of_object = found.of(ObjectId(0u));
+    for (std::size_t i = 0; !of_object.empty() && i < shapes.scene.indices.size(); i += 3) {
+      const std::vector<Vec3d> triangle{Vec3d(shapes.scene.positions[i]),
+                                        Vec3d(shapes.scene.positions[i + 1]),
+                                        Vec3d(shapes.scene.positions[i + 2])};
+      ASSERT_TRUE(isCovered(triangle, of_object, 1e-10)) << "seed " << seed;
+    }
+    boxes += of_object.size();
+  }
+  EXPECT_GT(boxes, 10000u);
+}
+
+TEST(ObjectBoxes, EveryInstructionSetGivesTheSame) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> coordinate(-10.0f, 10.0f);
+  Shapes shapes;
+  for (int o = 0; o < 40; ++o) {
+    shapes.addTriangles(1 + o, [&] { return coordinate(random); });
+    shapes.endObject();
+  }
+  std::vector<ObjectBoxes> found;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    found.push_back(findObjectBoxes(shapes.scene.view()));
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  for (const ObjectBoxes& other : found) {
+    EXPECT_EQ(found[0].first, other.first);
+    EXPECT_EQ(found[0].boxes, other.boxes);
+  }
 }
 
 TEST(ObjectBoxes, HoldTrianglesThatReachOneFloatBeyondAPlane) {
