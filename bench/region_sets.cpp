@@ -3,9 +3,10 @@
 // see (Embree). All begin where viewers are in the cell. A line to a point of the object's box sees it if
 // nothing opaque of another object is in between: what a test of one box an object has to keep. A line to a
 // point of one of its triangles sees it if it shows the object: what every test has to keep, so that
-// "seen, not kept" must be 0. The last column is of the walk's views from these eyes, culled by the frustum
-// and by the set of the cell, or of the eye's side of its plane, alone: what is kept for each object that the
-// pixels of 640 x 360 show.
+// "seen, not kept" must be 0. "Clipped" lines do not count what is closer to the viewer than the near
+// distance, because near planes may clip it; sets have to keep what they see, in boxes, as well. The last
+// column is of the walk's views from these eyes, culled by the frustum and by the set of the cell, or of the
+// eye's side of its plane, alone: what is kept for each object that the pixels of 640 x 360 show.
 //
 //   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
 //               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
@@ -102,16 +103,18 @@ Vec3d randomOn(const SceneView& scene, const Object& object, SplitMix& random) {
 }
 
 // Traces random lines from the region, 16 at a time, until test(the 16, their hits) holds for one of them.
-// to(random): where a line leads, and `beyond` of its length farther.
+// to(random): where a line leads, and `beyond` of its length farther. near: what is closer to its start does
+// not block a line, metres.
 template <typename To, typename Test>
 bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t lines, float beyond,
-              SplitMix& random, const To& to, const Test& test) {
+              double near, SplitMix& random, const To& to, const Test& test) {
   std::vector<RayHit> hits;
   for (std::uint32_t line = 0; line < lines; line += RayScene::kBatch) {
     RayScene::Batch batch;
     for (FloatRay& ray : batch) {
-      const Vec3d from = randomIn(region.min, region.max, random);
-      ray = {Vec3f(from), Vec3f(to(random) - from), 1.0f + beyond};
+      const Vec3d eye = randomIn(region.min, region.max, random), target = to(random), sight = target - eye;
+      const Vec3d from = eye + sight * std::min(1.0, near / std::max(length(sight), near));
+      ray = {Vec3f(from), Vec3f(target - from), 1.0f + beyond};
     }
     hits.clear();
     rays.trace(batch, RayScene::kBatch, false, hits);
@@ -124,9 +127,9 @@ bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t li
 
 // Whether a line reaches the object's box with nothing opaque of another object before it.
 bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
-                 std::uint32_t lines, SplitMix& random) {
+                 std::uint32_t lines, double near, SplitMix& random) {
   return someLine(
-      rays, region, lines, 0.0f, random,
+      rays, region, lines, 0.0f, near, random,
       [&](SplitMix& numbers) { return randomIn(Vec3d(box.min), Vec3d(box.max), numbers); },
       [&](const RayScene::Batch&, const std::vector<RayHit>& hits) {
         std::uint32_t blocked = 0;
@@ -155,7 +158,7 @@ bool lineSees(const RayScene& rays, const SceneView& scene, const pvs::CellBox& 
   const Object& target = scene.objects[object.value];
   return target.triangleCount() > 0 &&
          someLine(
-             rays, region, lines, 1e-4f, random,
+             rays, region, lines, 1e-4f, 0.0, random,
              [&](SplitMix& numbers) { return randomOn(scene, target, numbers); },
              [&](const RayScene::Batch& batch, const std::vector<RayHit>& hits) {
                return std::any_of(hits.begin(), hits.end(), [&](const RayHit& hit) {
@@ -228,8 +231,8 @@ void measure(const std::string& name, const Options& options) {
   const RayScene rays(scene.view());
   const ExactVisibility exact(scene.view());
   std::set<std::array<std::uint32_t, 3>> known;
-  std::uint64_t pairs = 0, kept = 0, box_seen = 0, seen = 0, seen_but_hidden = 0, in_view = 0,
-                exact_in_view = 0;
+  std::uint64_t pairs = 0, kept = 0, box_seen = 0, clipped_seen = 0, seen = 0, seen_but_hidden = 0,
+                in_view = 0, exact_in_view = 0;
   double us = 0.0;
   SplitMix random{1};
   pvs::CellBaker baker(bake);
@@ -253,7 +256,11 @@ void measure(const std::string& name, const Options& options) {
         continue;
       }
       const ObjectId object = bake.boxes.objects[position];
-      const bool sees_box = lineSeesBox(rays, region, box, object, options.lines, random);
+      const bool sees_box = lineSeesBox(rays, region, box, object, options.lines, 0.0, random);
+      clipped_seen +=
+          sees_box || lineSeesBox(rays, region, box, object, options.lines, settings.near_distance, random)
+              ? 1
+              : 0;
       // What is neither kept nor seen is hardly in doubt.
       const std::uint32_t lines = sees_box || keeps.contains(position) ? options.lines : options.lines / 10;
       const bool sees = lineSees(rays, scene.view(), region, object, lines,
@@ -269,11 +276,14 @@ void measure(const std::string& name, const Options& options) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
   };
   fmt::print(
-      "| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.0f} | {} | {:.2f} |\n",
+      "| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.0f} | {} "
+      "| "
+      "{:.2f} |\n",
       name.substr(name.rfind('/') + 1),
       std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
-      percent(box_seen), percent(seen), percent(kept),
+      percent(box_seen), percent(clipped_seen), percent(seen), percent(kept),
       static_cast<double>(kept) / static_cast<double>(box_seen),
+      static_cast<double>(kept) / static_cast<double>(clipped_seen),
       static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs), seen_but_hidden,
       static_cast<double>(in_view) / static_cast<double>(exact_in_view));
   std::fflush(stdout);
@@ -284,9 +294,9 @@ void measure(const std::string& name, const Options& options) {
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   fmt::print(
-      "| scene | cell, m | cells | pairs | lines to boxes, % | to triangles, % | kept, % | kept / lines to "
-      "boxes | to triangles | us a pair | seen, not kept | in view / exact |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| scene | cell, m | cells | pairs | lines to boxes, % | clipped, % | to triangles, % | kept, % | kept "
+      "/ lines to boxes | clipped | to triangles | us a pair | seen, not kept | in view / exact |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& scene : options.scenes) {
     measure(scene, options);
   }

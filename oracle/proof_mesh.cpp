@@ -96,11 +96,11 @@ void ProofMesh::findBodies() {
 }
 
 std::uint32_t ProofMesh::partnerOf(std::uint32_t sheet, std::uint32_t from, std::uint32_t to,
-                                   std::uint32_t left_out) const {
+                                   std::span<const std::uint32_t> left_out) const {
   std::vector<std::uint32_t> there, back;
   const std::uint32_t low = std::min(from, to), high = std::max(from, to);
   for (const std::uint32_t t : edges.at(edgeOf(from, to))) {
-    if (triangles[t].object == left_out) {
+    if (std::find(left_out.begin(), left_out.end(), triangles[t].object) != left_out.end()) {
       continue;
     }
     const bool runs_up = runs(triangles[t], low, high);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -40,10 +41,10 @@ struct ProofMesh {
     const auto& v = triangles[sheet / 2].vertex;
     return sheet % 2 == 0 ? v : std::array<std::uint32_t, 3>{v[0], v[2], v[1]};
   }
-  // The sheet that is joined with this one at its edge, without the left-out object; kNoSheet if there is
+  // The sheet that is joined with this one at its edge, without the left-out objects; kNoSheet if there is
   // none. Joining is mutual, so that joined edges cancel, whatever the choice.
   std::uint32_t partnerOf(std::uint32_t sheet, std::uint32_t from, std::uint32_t to,
-                          std::uint32_t left_out) const;
+                          std::span<const std::uint32_t> left_out) const;
   // True if the segment surely meets no triangle of the object.
   bool misses(const Vec3d& from, const Vec3d& to, ObjectId object) const;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "oracle/proof_mesh.h"
 #include "oracle/region_hull.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::size_t kMostFaces = 256;     // of a body
 constexpr std::size_t kMostMembers = 1024;  // of a surface
 constexpr std::size_t kMostCandidates = 24;
+constexpr std::size_t kMostLeftOut = 24;  // objects, when a surface is followed
 
 }  // namespace
 
@@ -204,7 +206,27 @@ class RegionProof::Attempt {
     return from_eyes && (apart(box, target_, 0.0) || allOn(t, true, false) || allOn(t, false, false));
   }
 
+  // Follows the surface of a triangle, again and again without the objects that kept it from being a proof:
+  // any triangles may be left out of it.
   bool surfaceHides(std::uint32_t triangle, const Shaft& shaft) const {
+    std::vector<std::uint32_t> left_out{claim_.target.value};
+    while (left_out.size() <= kMostLeftOut) {
+      std::optional<std::uint32_t> spoiler;
+      if (surfaceHides(triangle, shaft, left_out, spoiler)) {
+        return true;
+      }
+      if (!spoiler || *spoiler == mesh_.triangles[triangle].object) {
+        return false;
+      }
+      left_out.push_back(*spoiler);
+    }
+    return false;
+  }
+
+  // spoiler: set to an object, not yet left out, of which a triangle is too near or ends in the shaft, if
+  // that is what is wrong.
+  bool surfaceHides(std::uint32_t triangle, const Shaft& shaft, std::span<const std::uint32_t> left_out,
+                    std::optional<std::uint32_t>& spoiler) const {
     const ProofMesh::Triangle& t = mesh_.triangles[triangle];
     std::uint32_t start = 2 * triangle;
     if (sideOf(t.at, starts_[0]).negative()) {
@@ -218,7 +240,11 @@ class RegionProof::Attempt {
       const Corners at = mesh_.cornersOf(members[i]);
       const std::array<Vec3d, 3> p{at.a, at.b, at.c};
       const std::array<std::uint32_t, 3> vertices = mesh_.verticesOf(members[i]);
-      if (members.size() > kMostMembers || (!clearOfEnds(at) && !shaft.isMissedBy(at))) {
+      if (members.size() > kMostMembers) {
+        return false;
+      }
+      if (!clearOfEnds(at) && !shaft.isMissedBy(at)) {
+        spoiler = mesh_.triangles[members[i] / 2].object;
         return false;
       }
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -226,8 +252,9 @@ class RegionProof::Attempt {
           continue;
         }
         const std::uint32_t partner =
-            mesh_.partnerOf(members[i], vertices[k], vertices[(k + 1) % 3], claim_.target.value);
+            mesh_.partnerOf(members[i], vertices[k], vertices[(k + 1) % 3], left_out);
         if (partner == ProofMesh::kNoSheet) {
+          spoiler = mesh_.triangles[members[i] / 2].object;
           return false;
         }
         if (std::find(members.begin(), members.end(), partner) == members.end()) {

@@ -72,6 +72,25 @@ TEST(RegionProof, ProvesWhatTwoWallsWithACommonEdgeHide) {
   EXPECT_TRUE(s.proved());
 }
 
+// Eyes on both sides of a floor, and before a wall that is joined with it: the floor is too near to hide
+// anything. Without it the wall is joined with an overhang, which begins at the same edge and rises behind
+// it.
+TEST(RegionProof, LeavesOutAFloorThatEyesAreIn) {
+  for (const bool overhang : {true, false}) {
+    Setting s;
+    const auto addQuad = [&](const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
+      addTriangles(s.scene, s.opaque, std::array{a, b, c, a, c, d});
+    };
+    addQuad({-9, -0.5f, -1}, {9, -0.5f, -1}, {9, 9, -1}, {-9, 9, -1});
+    addQuad({9, -0.5f, -1}, {-9, -0.5f, -1}, {-9, -0.5f, 9}, {9, -0.5f, 9});
+    if (overhang) {
+      addQuad({9, -0.5f, -1}, {-9, -0.5f, -1}, {-9, 0.5f, -9}, {9, 0.5f, -9});
+    }
+    s.target = addWall(s.scene, s.opaque, -4, -1, 1, 0, 1);
+    EXPECT_EQ(s.proved(0.1), overhang) << "eyes below the floor see the target below the wall";
+  }
+}
+
 TEST(RegionProof, ProvesNothingByTheBackOfASingleSidedWall) {
   Setting s;
   addWall(s.scene, s.opaque, -1, -9, 9, -9, 9, true);

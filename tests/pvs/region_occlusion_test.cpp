@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -409,13 +411,153 @@ TEST(Panels, JoinWhatAViewerSeesAsOneSurface) {
     for (const PanelEdge& edge : panels.edgesOf(panel)) {
       if (edge.beyond != kNoPanel && panels.panels[edge.beyond].object != panel.object) {
         ++joined;
-        // Without the other object the floor goes on below the wall, and the wall ends.
-        EXPECT_EQ(edge.instead != kNoPanel, false);
+        const std::uint32_t instead = panels.joinedWithout(edge, [&](std::uint32_t other) {
+          return panels.panels[other].object == panels.panels[edge.beyond].object;
+        });
+        // Without the wall the floor goes on below it; without the floor, the wall ends.
+        if (panel.object == 0) {
+          ASSERT_NE(instead, kNoPanel);
+          EXPECT_EQ(panels.panels[instead].object, 0u);
+        } else {
+          EXPECT_EQ(instead, kNoPanel);
+        }
       }
     }
   }
   EXPECT_EQ(joined, 8) << "four sides of the wall, and the floor around them";
   EXPECT_EQ(bareEdges(panels), 4u);
+}
+
+// Boxes that touch, overlap and share faces, some without a face.
+Scene anyBlocks(std::mt19937& random, int count) {
+  std::vector<Solid> solids;
+  for (int i = 0; i < count; ++i) {
+    const auto at = [&] { return static_cast<float>(random() % 4); };
+    const Vec3f low{at(), at(), at()};
+    solids.push_back(block(low, low + Vec3f{1.0f + static_cast<float>(random() % 2), 1.0f, 1.0f}));
+    if (random() % 3 == 0) {
+      solids.back().faces.erase(solids.back().faces.begin() + random() % 6);
+    }
+  }
+  Scene scene = sceneOf(solids);
+  scene.materials[0].double_sided = random() % 3 == 0;
+  return scene;
+}
+
+// Whatever objects are left out: at every edge, one panel is joined with another as often as the other way
+// around, along the edge in the opposite direction. Otherwise a set of joined panels would have a boundary.
+TEST(Panels, AreJoinedBothWaysWhateverIsLeftOut) {
+  std::mt19937 random(3);
+  int joined_anew = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Panels panels = findPanels(anyBlocks(random, 6).view());
+    const std::uint32_t left_out = random() % 64;
+    const auto isOut = [&](std::uint32_t panel) {
+      return (left_out >> panels.panels[panel].object & 1) != 0;
+    };
+    std::map<std::array<std::uint32_t, 4>, int> joins;
+    for (std::uint32_t i = 0; i < panels.panels.size(); ++i) {
+      if (isOut(i)) {
+        continue;
+      }
+      for (const PanelEdge& edge : panels.edgesOf(panels.panels[i])) {
+        std::uint32_t beyond = edge.beyond;
+        if (beyond == kNoPanel || isOut(beyond)) {
+          beyond = panels.joinedWithout(edge, isOut);
+          joined_anew += beyond == kNoPanel ? 0 : 1;
+        }
+        if (beyond != kNoPanel) {
+          EXPECT_FALSE(isOut(beyond));
+          ++joins[{edge.from, edge.to, i, beyond}];
+        }
+      }
+    }
+    for (const auto& [join, times] : joins) {
+      const auto other = joins.find({join[1], join[0], join[3], join[2]});
+      EXPECT_EQ(other == joins.end() ? 0 : other->second, times) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(joined_anew, 100);
+}
+
+// A storey: tiles of floor 0.2 metres thick, a tile for each room, and walls between the rooms that stand on
+// two tiles each. Rooms are 4 metres wide and in a row along x, from x = 0 on.
+Scene rooms(int count) {
+  std::vector<Solid> solids;
+  for (int i = 0; i < count; ++i) {
+    const float x = 4.0f * static_cast<float>(i);
+    solids.push_back(block({x, -0.2f, -2}, {x + 4, 0, 2}));
+    solids.push_back(block({x, 3, -2}, {x + 4, 3.2f, 2}));
+    solids.push_back(block({x + 3.9f, 0, -2}, {x + 4.1f, 3, 2}));
+    solids.push_back(block({x + (i == 0 ? 0.0f : 0.1f), 0, 1.8f}, {x + 3.9f, 3, 2}));
+    solids.push_back(block({x + (i == 0 ? 0.0f : 0.1f), 0, -2}, {x + 3.9f, 3, -1.8f}));
+  }
+  return sceneOf(solids);
+}
+
+TEST(RegionOcclusion, AFloorThatViewersAreInDoesNotKeepAWallFromHiding) {
+  // From the floor to below the ceiling, less than the near distance away from either, and through both.
+  const FusedTarget on_the_floor{.box = {{9, 0, -1}, {10, 1, 1}}}, below{.box = {{9, -0.2, -1}, {10, 1, 1}}};
+  for (const CellBox& viewers : {CellBox{{1, 0, -1}, {2, 1, 1}}, CellBox{{1, -0.1, -1}, {2, 3.1, 1}},
+                                 CellBox{{1, 1, -1}, {2, 2.95, 1}}}) {
+    EXPECT_TRUE(hides(rooms(3), viewers, on_the_floor));
+    EXPECT_TRUE(hides(rooms(3), viewers, below));
+  }
+  // The wall itself does not hide from viewers in it, and no other is in the way of what is in the next room.
+  EXPECT_FALSE(hides(rooms(3), {{3.5, 0, -1}, {4, 1, 1}}, {.box = {{6, 0, -1}, {7, 1, 1}}}));
+  EXPECT_TRUE(hides(rooms(3), {{3.5, 0, -1}, {4, 1, 1}}, on_the_floor));
+}
+
+TEST(RegionOcclusion, AnOpenGroundDoesNotKeepAHouseFromHiding) {
+  // The ground is one rectangle with its front up, and nothing joins its border.
+  Solid ground = block({-10, -1, -10}, {10, 0, 10});
+  ground.faces = {*std::find_if(ground.faces.begin(), ground.faces.end(), [&](const auto& face) {
+    return std::all_of(face.begin(), face.end(), [&](std::uint32_t i) { return ground.points[i].y == 0.0f; });
+  })};
+  const Solid house = block({0, -1, -6}, {2, 8, 6});
+  const FusedTarget behind{.box = {{4, 0, -1}, {5, 1, 1}}};
+  EXPECT_TRUE(hides(sceneOf({ground, house}), {{-6, 0, -1}, {-5, 1, 1}}, behind));
+  EXPECT_FALSE(hides(sceneOf({ground, house}), {{-6, -8, -1}, {-5, 1, 1}}, behind)) << "seen from below";
+  EXPECT_FALSE(hides(sceneOf({ground, house}), {{-6, 0, -1}, {-5, 1, 1}}, {.box = {{4, 0, -1}, {5, 30, 1}}}));
+}
+
+TEST(RegionOcclusion, WhatIsLeftOutMakesNoLineClear) {
+  // The floor is too near, and all that is in the way.
+  const Panels panels = findPanels(sceneOf({block({-8, -1, -8}, {8, 0, 8})}).view());
+  FusedOcclusion occlusion(panels, 100.0);
+  const FusedTarget below{.box = {{0, -3, 0}, {1, -2, 1}}};
+  EXPECT_EQ(occlusion.ask({{0, 0.05, 0}, {1, 1, 1}}, below, 0.1), FusedOcclusion::Answer::kUndecided);
+  EXPECT_EQ(occlusion.ask({{0, 0.05, 0}, {1, 1, 1}}, below, 0.01), FusedOcclusion::Answer::kHidden);
+  EXPECT_EQ(occlusion.ask({{0, 0.05, 0}, {1, 1, 1}}, {.box = {{0, 2, 0}, {1, 3, 1}}}, 0.1),
+            FusedOcclusion::Answer::kClear);
+}
+
+TEST(RegionOcclusion, PanelsDoNotReachAroundTheEndOfAWall) {
+  // A floor of many pieces goes on around a wall: what is before the wall is joined with what is behind it
+  // only beside the shaft. Viewers are beside the floor, on both sides of its height, so that the edge of the
+  // wall on it is in the shaft.
+  const Scene scene = sceneOf({dicedBlock({-4, -1, -4}, {4, 0, 4}, 4), block({0, 0, -1}, {0.25f, 4, 1})});
+  EXPECT_TRUE(hides(scene, {{-6, -0.5, -0.2}, {-5, 1, 0.2}}, {.box = {{2, 0, -0.2}, {3, 1, 0.2}}}));
+}
+
+// Viewers anywhere among walls, floors and furniture, in them as well.
+TEST(RegionOcclusion, HidesNothingThatALineSeesFromWithinSolids) {
+  std::mt19937 random(5);
+  int hidden = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Scene scene = random() % 2 == 0 ? anyBlocks(random, 12) : rooms(3);
+    const auto at = [&] { return 0.5 * static_cast<double>(random() % 24); };
+    const auto box = [&] {
+      const Vec3d low{at(), 0.5 * static_cast<double>(random() % 6) - 0.5,
+                      0.5 * static_cast<double>(random() % 8) - 2.0};
+      return CellBox{low, low + Vec3d{0.5, 0.5 + 0.5 * static_cast<double>(random() % 3), 0.5}};
+    };
+    const CellBox viewers = box(), target = box();
+    if (!intersects(viewers, target)) {
+      hidden += hides(scene, viewers, {.box = target}, {}, random() % 2 == 0 ? 0.0 : 0.3) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hidden, 20);
 }
 
 }  // namespace

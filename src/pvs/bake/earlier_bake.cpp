@@ -146,7 +146,13 @@ std::vector<PanelMark> panelMarks(const Panels& panels, std::span<const ObjectMa
       hash.add(panels.vertices[edge.from]);
       hash.add(panels.vertices[edge.to]);
       hash.add(edge.beyond == kNoPanel ? 0 : own[edge.beyond]);
-      hash.add(edge.instead == kNoPanel ? 0 : own[edge.instead]);
+      // From itself on, because where the others begin depends on the numbers of panels.
+      for (std::uint32_t k = 0; k < edge.around_count; ++k) {
+        const SheetAround& sheet = panels.around[edge.first_around + (edge.self + k) % edge.around_count];
+        hash.add(own[sheet.panel]);
+        hash.add(sheet.beyond == kNoPanel ? 0 : own[sheet.beyond]);
+        hash.add(std::uint64_t{sheet.rises});
+      }
     }
     marks.push_back({hash.value(), panels.bounds[i]});
   }

@@ -18,6 +18,9 @@ namespace {
 // A component of more panels is taken for open, which bounds the time. A box of several objects is rarely
 // hidden as a whole.
 constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
+// So often is a question asked again without what spoiled it. Spoilers are mostly the floor below the region
+// and what is joined with it.
+constexpr std::uint32_t kMostRepeats = 4;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
@@ -86,12 +89,16 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
     magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }
   magnitude_ *= 1.0 + 2.0 * kWidening;
+  for (const Panel& panel : panels.panels) {
+    left_out_in_.resize(std::max<std::size_t>(left_out_in_.size(), std::size_t{panel.object} + 1));
+  }
   error_ = 0x1p-51 * magnitude_ + panels.slack;
   sheet_margin_ = 0x1p-24 * magnitude_ + panels.slack;
 }
 
 bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object) {
-  left_out_ = object;
+  leaveOut(object);
+  startQuestion();
   findCrossings(from, to, true);
   return clear();
 }
@@ -107,16 +114,69 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   region_ = region;
   target_ = {target.box.min - by, target.box.max + by};
   near_distance_ = near_distance;
-  left_out_ = target.object;
+  leaveOut(target.object);
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
   shaft_ = Shaft(region_, target_, magnitude_, panels_.slack);
+  if (++shaft_number_ == 0) {
+    std::fill(beyond_.begin(), beyond_.end(), Beyond{});
+    shaft_number_ = 1;
+  }
+  spoilers_.clear();
+  Answer answer = askWithout();
+  if (answer != Answer::kUndecided || spoilers_.empty()) {
+    return answer;
+  }
+  if (seesAnyEnd()) {
+    return Answer::kClear;
+  }
+  for (std::uint32_t repeat = 0; repeat < kMostRepeats && answer != Answer::kHidden && !spoilers_.empty();
+       ++repeat) {
+    left_out_.insert(left_out_.end(), spoilers_.begin(), spoilers_.end());
+    spoilers_.clear();
+    answer = askWithout();
+  }
+  // What is left out may block a line that is clear without it.
+  return answer == Answer::kHidden ? answer : Answer::kUndecided;
+}
+
+// Whether one of the lines of sight that askWithout() may try is clear.
+bool FusedOcclusion::seesAnyEnd() {
+  const Vec3d from = startOf(region_);
+  return std::any_of(kEnds.begin(), kEnds.end(), [&](const Vec3d& end) {
+    findCrossings(from, pointIn(target_, end), true);
+    return clear();
+  });
+}
+
+void FusedOcclusion::leaveOut(std::uint32_t object) {
+  left_out_.clear();
+  if (object < left_out_in_.size()) {
+    left_out_.push_back(object);
+  }
+}
+
+void FusedOcclusion::startQuestion() {
   components_.clear();
   members_.clear();
   if (++question_ == 0) {
     std::fill(places_.begin(), places_.end(), Place{});
-    std::fill(beyond_.begin(), beyond_.end(), Beyond{});
+    std::fill(left_out_in_.begin(), left_out_in_.end(), 0);
     question_ = 1;
   }
+  for (const std::uint32_t object : left_out_) {
+    left_out_in_[object] = question_;
+  }
+}
+
+void FusedOcclusion::addSpoiler(std::uint32_t panel) {
+  const std::uint32_t object = panels_.panels[panel].object;
+  if (std::find(spoilers_.begin(), spoilers_.end(), object) == spoilers_.end()) {
+    spoilers_.push_back(object);
+  }
+}
+
+FusedOcclusion::Answer FusedOcclusion::askWithout() {
+  startQuestion();
   const Vec3d from = startOf(region_);
   for (const Vec3d& end : kEnds) {
     const Vec3d to = pointIn(target_, end);
@@ -180,7 +240,7 @@ void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool unti
 }
 
 void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const Vec3d& to) {
-  if (panels_.panels[number].object == left_out_) {
+  if (isLeftOut(number)) {
     return;
   }
   const Vec3d along = to - from;
@@ -247,13 +307,17 @@ bool FusedOcclusion::gather(std::uint32_t component) {
     const std::uint32_t panel = ahead_.back();
     ahead_.pop_back();
     followed_.extend(panels_.bounds[panel]);
-    if (looked_at == most_members_ || tooNear(panel)) {
+    if (looked_at == most_members_) {
+      return false;
+    }
+    if (tooNear(panel)) {
+      addSpoiler(panel);
       return false;
     }
     for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[panel])) {
       std::uint32_t beyond = edge.beyond;
-      if (beyond != kNoPanel && panels_.panels[beyond].object == left_out_) {
-        beyond = edge.instead;
+      if (beyond == kNoPanel ? !left_out_.empty() : isLeftOut(beyond)) {
+        beyond = panels_.joinedWithout(edge, [this](std::uint32_t other) { return isLeftOut(other); });
       }
       if (beyond != kNoPanel && places_[beyond].question == question_ &&
           places_[beyond].component == component) {
@@ -262,8 +326,12 @@ bool FusedOcclusion::gather(std::uint32_t component) {
       if (misses(edge)) {
         continue;
       }
-      if (beyond == kNoPanel || places_[beyond].question == question_) {
-        return false;  // the boundary, or a component that was not closed
+      if (beyond == kNoPanel) {
+        addSpoiler(panel);
+        return false;  // the boundary
+      }
+      if (places_[beyond].question == question_) {
+        return false;  // a component that was not closed
       }
       places_[beyond] = {question_, component};
       members_.push_back(beyond);
@@ -287,8 +355,8 @@ bool FusedOcclusion::misses(const PanelEdge& edge) {
 // at each vertex.
 std::uint32_t FusedOcclusion::sidesBeyond(std::uint32_t vertex) {
   Beyond& known = beyond_[vertex];
-  if (known.question != question_) {
-    known = {question_, shaft_.sidesBeyond(panels_.vertices[vertex])};
+  if (known.shaft != shaft_number_) {
+    known = {shaft_number_, shaft_.sidesBeyond(panels_.vertices[vertex])};
   }
   return known.sides;
 }

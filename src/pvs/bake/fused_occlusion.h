@@ -66,6 +66,16 @@ class FusedOcclusion {
     bool in_doubt = false;
   };
 
+  // Answers without the objects of left_out_.
+  Answer askWithout();
+  bool seesAnyEnd();
+  void leaveOut(std::uint32_t object);  // and nothing else
+  void startQuestion();
+  bool isLeftOut(std::uint32_t panel) const {
+    return left_out_in_[panels_.panels[panel].object] == question_;
+  }
+  // Notes that its object keeps a surface from hiding anything.
+  void addSpoiler(std::uint32_t panel);
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
   void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
@@ -85,8 +95,11 @@ class FusedOcclusion {
   // These describe the last question.
   CellBox region_, target_;
   double near_distance_ = 0.0;
-  std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing
-  std::uint32_t most_members_ = 0;      // of a component
+  // Objects whose sheets count for nothing: the target's own first, if it is the only one, then spoilers.
+  std::vector<std::uint32_t> left_out_;
+  // Objects of panels that are too near, or have an edge in the shaft at which nothing else ends.
+  std::vector<std::uint32_t> spoilers_;
+  std::uint32_t most_members_ = 0;  // of a component
   Shaft shaft_;
   Proof proof_;
   std::vector<Crossing> crossings_;
@@ -96,12 +109,13 @@ class FusedOcclusion {
   struct Place {
     std::uint32_t question = 0, component = 0;
   };
-  std::vector<Place> places_;  // by panel: the component that it was found in
+  std::vector<Place> places_;               // by panel: the component that it was found in
+  std::vector<std::uint32_t> left_out_in_;  // by object: the last question that left it out
   struct Beyond {
-    std::uint32_t question = 0, sides = 0;
+    std::uint32_t shaft = 0, sides = 0;
   };
   std::vector<Beyond> beyond_;  // by vertex: the sides of the shaft that it is beyond
-  std::uint32_t question_ = 0;
+  std::uint32_t question_ = 0, shaft_number_ = 0;
   Box followed_;
 };
 

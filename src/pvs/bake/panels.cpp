@@ -13,8 +13,10 @@ namespace {
 
 // In scenes of more triangles, mostly foliage, those that penetrate each other make too many pieces.
 constexpr std::uint32_t kMostPenetrating = 500'000;
-constexpr std::uint32_t kMostSheets = 32;  // of a panel
-constexpr double kLeastCosine = 0.98;      // of the angle between normals of a panel
+// Of a panel. One that reaches around the end of a wall would join what is before the wall with what is
+// behind it.
+constexpr std::uint32_t kMostSheets = 4;
+constexpr double kLeastCosine = 0.98;  // of the angle between normals of a panel
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 // The least power of two that is not smaller; 0 for 0. The slack counts in all questions to all panels, so it
@@ -43,14 +45,13 @@ struct HalfEdge {
 // The one that each of some half-edges at one edge is joined with, or kNone. They are in the order of their
 // sheets' angles around the edge. A sheet whose half-edge rises has its front towards greater angles, one
 // whose falls towards smaller ones. So the pairs are those of brackets, all around.
-template <typename LeftOut>
-void joinAround(std::span<const HalfEdge> around, LeftOut&& left_out, std::vector<std::uint32_t>& joined) {
+void joinAround(std::span<const HalfEdge> around, std::vector<std::uint32_t>& joined) {
   const auto count = static_cast<std::uint32_t>(around.size());
   joined.assign(count, kNone);
   std::vector<std::uint32_t> open;
   for (std::uint32_t k = 0; k < 2 * count; ++k) {
     const std::uint32_t i = k % count;
-    if (left_out(i) || joined[i] != kNone) {
+    if (joined[i] != kNone) {
       continue;
     }
     if (around[i].rises) {
@@ -104,51 +105,29 @@ class PanelMaker {
     }
   }
 
-  // Sets joined_ and instead_.
+  // Sets joined_, rings_ and ring_of_.
   void join() {
-    std::vector<HalfEdge> all;
-    all.reserve(panels_.sheets.size());
+    rings_.reserve(panels_.sheets.size());
     for (std::uint32_t number = 0; number < panels_.sheets.size(); ++number) {
       const std::uint32_t from = panels_.sheets[number], to = panels_.sheets[nextInSheet(number)];
-      all.push_back({std::min(from, to), std::max(from, to), number, from < to});
+      rings_.push_back({std::min(from, to), std::max(from, to), number, from < to});
     }
-    std::sort(all.begin(), all.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    std::sort(rings_.begin(), rings_.end(), [](const HalfEdge& a, const HalfEdge& b) {
       return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
     });
     joined_.assign(panels_.sheets.size(), kNone);
-    instead_.assign(panels_.sheets.size(), kNone);
-    for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
-      while (end < all.size() && all[end].low == all[first].low && all[end].high == all[first].high) {
+    ring_of_.resize(panels_.sheets.size());
+    for (std::uint32_t first = 0, end = 0; first < rings_.size(); first = end) {
+      while (end < rings_.size() && rings_[end].low == rings_[first].low &&
+             rings_[end].high == rings_[first].high) {
         ++end;
       }
-      joinEdge(std::span(all).subspan(first, end - first));
-    }
-  }
-
-  // The half-edges at one edge.
-  void joinEdge(std::span<HalfEdge> around) {
-    sortAround(around);
-    joinAround(
-        around, [](std::uint32_t) { return false; }, pairs_);
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      joined_[around[i].number] = pairs_[i] == kNone ? kNone : around[pairs_[i]].number;
-    }
-    const auto objectAt = [&](std::uint32_t i) { return object_of_[sheetOf(around[i].number)]; };
-    const auto objectBeyond = [&](std::uint32_t i) {
-      return pairs_[i] == kNone ? kNoObject : objectAt(pairs_[i]);
-    };
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      const std::uint32_t out = objectBeyond(i);
-      if (out == kNoObject || out == objectAt(i) || instead_[around[i].number] != kNone) {
-        continue;
-      }
-      // Only those are joined anew that lose the one that they are joined with.
-      joinAround(
-          around, [&](std::uint32_t k) { return objectAt(k) == out || objectBeyond(k) != out; }, others_);
-      for (std::uint32_t k = 0; k < around.size(); ++k) {
-        if (others_[k] != kNone) {
-          instead_[around[k].number] = around[others_[k]].number;
-        }
+      const std::span<HalfEdge> around = std::span(rings_).subspan(first, end - first);
+      sortAround(around);
+      joinAround(around, pairs_);
+      for (std::uint32_t i = 0; i < around.size(); ++i) {
+        joined_[around[i].number] = pairs_[i] == kNone ? kNone : around[pairs_[i]].number;
+        ring_of_[around[i].number] = {first, end - first, i};
       }
     }
   }
@@ -229,14 +208,33 @@ class PanelMaker {
     const auto panelAt = [&](std::uint32_t half_edge) {
       return half_edge == kNone ? kNoPanel : panel_of[sheetOf(half_edge)];
     };
+    // By index into rings_: where those of that edge are in Panels::around, or kNone.
+    std::vector<std::uint32_t> added(rings_.size(), kNone);
+    const auto addRing = [&](const RingPlace& place) {
+      if (added[place.first] == kNone) {
+        added[place.first] = static_cast<std::uint32_t>(panels_.around.size());
+        for (const HalfEdge& half_edge : std::span(rings_).subspan(place.first, place.count)) {
+          panels_.around.push_back(
+              {panelAt(half_edge.number), panelAt(joined_[half_edge.number]), half_edge.rises});
+        }
+      }
+      return added[place.first];
+    };
     for (Panel& panel : panels_.panels) {
       panel.first_edge = static_cast<std::uint32_t>(panels_.edges.size());
       for (const std::uint32_t sheet : order.subspan(panel.first_sheet, panel.sheet_count)) {
         for (std::uint32_t number = 3 * sheet; number < 3 * sheet + 3; ++number) {
-          if (panelAt(joined_[number]) != panel_of[sheet]) {
-            panels_.edges.push_back({panels_.sheets[number], panels_.sheets[nextInSheet(number)],
-                                     panelAt(joined_[number]), panelAt(instead_[number])});
+          if (panelAt(joined_[number]) == panel_of[sheet]) {
+            continue;
           }
+          PanelEdge edge{panels_.sheets[number], panels_.sheets[nextInSheet(number)],
+                         panelAt(joined_[number])};
+          if (const RingPlace& place = ring_of_[number]; place.count > 2) {
+            edge.first_around = addRing(place);
+            edge.around_count = place.count;
+            edge.self = place.self;
+          }
+          panels_.edges.push_back(edge);
         }
       }
       panel.edge_count = static_cast<std::uint32_t>(panels_.edges.size()) - panel.first_edge;
@@ -283,10 +281,16 @@ class PanelMaker {
   }
 
   Panels panels_;
-  std::vector<std::uint32_t> object_of_;         // by sheet
-  std::vector<std::uint32_t> joined_, instead_;  // by half-edge: one of another sheet, or kNone
+  std::vector<std::uint32_t> object_of_;  // by sheet
+  std::vector<std::uint32_t> joined_;     // by half-edge: one of another sheet, or kNone
+  std::vector<HalfEdge> rings_;           // those of one edge together, by their sheets' angles
+  struct RingPlace {
+    std::uint32_t first = 0, count = 0;  // of its edge, in rings_
+    std::uint32_t self = 0;              // itself, from the first one on
+  };
+  std::vector<RingPlace> ring_of_;  // by half-edge
   // Scratch for one edge.
-  std::vector<std::uint32_t> pairs_, others_;
+  std::vector<std::uint32_t> pairs_;
   std::vector<std::pair<double, HalfEdge>> angles_;
 };
 

@@ -29,7 +29,16 @@ inline constexpr std::uint32_t kNoObject = 0xffffffffu;
 struct PanelEdge {
   std::uint32_t from = 0, to = 0;  // into Panels::vertices
   std::uint32_t beyond = 0;        // the panel that is joined with it there, or kNoPanel
-  std::uint32_t instead = 0;       // the one that is joined if the object of `beyond` is left out
+  // All sheets that end at the edge, in Panels::around, in the order of their angles; and which of them is
+  // this one. None if the two that are joined are the only ones.
+  std::uint32_t first_around = 0, around_count = 0, self = 0;
+};
+
+// A sheet that ends at an edge.
+struct SheetAround {
+  std::uint32_t panel = 0;          // its panel
+  std::uint32_t beyond = kNoPanel;  // the panel of the sheet that it is joined with, or kNoPanel
+  bool rises = false;               // its front is towards greater angles
 };
 
 struct Panel {
@@ -44,6 +53,7 @@ struct Panels {
   LargeVector<Vec3d> vertices{};
   LargeVector<std::uint32_t> sheets{};  // three vertices each, counter-clockwise as seen from its front
   LargeVector<PanelEdge> edges{};
+  LargeVector<SheetAround> around{};
   LargeVector<Panel> panels{};
   LargeVector<Box> bounds{};  // by panel, also of what was not rounded
   BoxTree tree{};             // its objects are numbers of panels
@@ -57,7 +67,37 @@ struct Panels {
   std::span<const PanelEdge> edgesOf(const Panel& p) const {
     return std::span(edges).subspan(p.first_edge, p.edge_count);
   }
+  // The panel that is joined at the edge if some panels are left out, `beyond` among them. isOut(panel): one
+  // that is. Only those sheets are joined anew that lose the one that they are joined with.
+  template <typename IsOut>
+  std::uint32_t joinedWithout(const PanelEdge& edge, const IsOut& isOut) const;
 };
+
+// The pairs are those of brackets, all around: each sheet that rises with the next one that falls.
+template <typename IsOut>
+std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& isOut) const {
+  const std::span<const SheetAround> all = std::span(around).subspan(edge.first_around, edge.around_count);
+  if (all.empty()) {
+    return kNoPanel;
+  }
+  const bool rises = all[edge.self].rises;
+  std::uint32_t open = 0;
+  for (std::uint32_t i = edge.self, step = 1; step < all.size(); ++step) {
+    i = rises ? (i + 1 == all.size() ? 0 : i + 1) : (i == 0 ? edge.around_count : i) - 1;
+    const SheetAround& sheet = all[i];
+    if (isOut(sheet.panel) || (sheet.beyond != kNoPanel && !isOut(sheet.beyond))) {
+      continue;
+    }
+    if (sheet.rises == rises) {
+      ++open;
+    } else if (open == 0) {
+      return sheet.panel;
+    } else {
+      --open;
+    }
+  }
+  return kNoPanel;
+}
 
 // Makes panels of all opaque triangles that may be occluders and are finite. The result does not depend on
 // the threads.
