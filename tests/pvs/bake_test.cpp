@@ -466,6 +466,21 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   EXPECT_TRUE(same(*a, baked(scene, settings)));
 }
 
+TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {
+  const std::vector<Scene> scenes{makeShip({.decks = 3, .rooms = 4, .machinery = 8}), makeCity({.copies = 2}),
+                                  makeBuilding({.floors = 2})};
+  for (const Scene& scene : scenes) {
+    for (const bool witnesses : {false, true}) {
+      BakeSettings settings{.triangle_budget = 100, .max_depth = 5, .witnesses = witnesses};
+      const BakedVisibility with = baked(scene, settings);
+      settings.sample_bytes = 0;
+      const BakedVisibility without = baked(scene, settings);
+      EXPECT_TRUE(same(with, without));
+      EXPECT_GT(without.sets.count(), 20u);
+    }
+  }
+}
+
 TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
   BakeSettings settings{.max_depth = 3, .near_distance = 0.1};

@@ -208,8 +208,12 @@ TEST(Update, GivesTheBytesOfAFullBakeInDemoScenes) {
   for (const char* name : {"demo:ship?decks=3&rooms=4&machinery=0", "demo:city?copies=1"}) {
     const Result<Scene> scene = makeDemoScene(name);
     ASSERT_TRUE(scene);
-    judgeEdits(EditedScene::of(*scene), {.triangle_budget = 300, .max_depth = 3, .near_distance = 0.05}, 21,
-               editsOf(3), totals);
+    for (const std::size_t sample_bytes : {std::size_t{64} << 20, std::size_t{0}}) {
+      judgeEdits(
+          EditedScene::of(*scene),
+          {.triangle_budget = 300, .max_depth = 3, .near_distance = 0.05, .sample_bytes = sample_bytes}, 21,
+          editsOf(3), totals);
+    }
   }
   expectReuse(totals);
 }

@@ -417,7 +417,7 @@ TEST(Bake, RefusesValuesOutOfRange) {
       {"--similarity", {"-0.1", "1.5", "nan"}},
       {"--least-gain", {"-0.1", "1.5", "nan"}},
       {"--merge-tolerance", {"-0.1", "nan"}},
-      {"--sample-memory", {"0", "-1", "x"}},
+      {"--sample-memory", {"-1", "x", "99999999"}},
       {"--region",
        {"1,2,3", "0,0,0,0,1,1", "1,1,1,0,0,0", "a,b,c,d,e,f", "0,0,0,1,1,nan", "0,0,0,1,1,inf", ",,,,,"}},
       {"--viewers", {"", "bogus", "path,free"}},

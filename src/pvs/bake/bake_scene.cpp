@@ -149,11 +149,16 @@ std::uint64_t countCells(const CellBox& root, const OctreeCell& cell, std::uint3
   return count;
 }
 
+bool isThorough(const BakeSettings& settings) {
+  return settings.narrowings > 0 || settings.divisions > 0;
+}
+
 // The surfaces while these doors are closed and all others are open.
 Panels panelsOf(const SceneView& scene, const DoorGroups& doors, std::span<const ObjectId> closed,
-                const ParallelFor& parallel_for) {
+                const BakeSettings& settings, const ParallelFor& parallel_for) {
   const std::vector<Object> objects = withClosed(scene, doors, closed);
-  return findPanels({scene.positions, scene.indices, objects, scene.materials}, parallel_for);
+  const std::uint32_t most_sheets = isThorough(settings) ? kSmallPanel : kLargePanel;
+  return findPanels({scene.positions, scene.indices, objects, scene.materials}, most_sheets, parallel_for);
 }
 
 }  // namespace
@@ -171,7 +176,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       triangles(boxes.view()),
       position_of(scene.objects.size()),
       occluders(set),
-      panels(s.occlusion == BakeOcclusion::kFused ? panelsOf(scene, doors, {}, parallel_for) : Panels{}),
+      panels(s.occlusion == BakeOcclusion::kFused ? panelsOf(scene, doors, {}, s, parallel_for) : Panels{}),
       frame(frameOf(root, panels.tree)),
       object_boxes(
           s.occlusion == BakeOcclusion::kFused
@@ -197,7 +202,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   }
   if (settings.occlusion == BakeOcclusion::kFused) {
     for (const std::vector<ObjectId>& group : doors.groups) {
-      closed_panels.push_back(panelsOf(scene, doors, group, parallel_for));
+      closed_panels.push_back(panelsOf(scene, doors, group, settings, parallel_for));
     }
   }
   door_occluders_.resize(doors.all.size());
@@ -301,6 +306,10 @@ void BakeScene::countOccluders() {
   }
 }
 
+bool BakeScene::thorough() const {
+  return isThorough(settings);
+}
+
 bool BakeScene::mayDivide(const OctreeCell& cell) const {
   return cell.level < base_depth_ ||
          (cell.level < settings.max_depth && anyIntersecting(reach_tree_, boxOf(cell)));
@@ -371,6 +380,7 @@ BakeScene::LevelOccluders BakeScene::occludersFor(std::uint32_t level) const {
     }
   }
   found.tree = buildBoxTree(bounds, {});
+  found.cones = ConeTree(bounds, found.occluders);
   return found;
 }
 
@@ -380,18 +390,6 @@ void BakeScene::findOccluders(const CellBox& box, std::uint32_t level,
   const auto before = static_cast<std::ptrdiff_t>(found.size());
   forEachIntersecting(at_level.tree, box, [&](std::uint32_t i) { found.push_back(at_level.occluders[i]); });
   std::sort(found.begin() + before, found.end());
-}
-
-void BakeScene::findOccludersAlong(const Vec3d& from, const Vec3d& to, double margin, const CellBox& box,
-                                   std::uint32_t level, std::vector<std::uint32_t>& found) const {
-  const LevelOccluders& at_level = levels_[level];
-  const SegmentTest line(from, to, margin);
-  const BoxTree& tree = at_level.tree;
-  forEachLeaf(
-      tree.view(), [&](const Box& bounds) { return !intersects(box, bounds) || line.misses(bounds); },
-      [&](const BoxNode& leaf) {
-        found.push_back(at_level.occluders[tree.objects[leaf.first_object].value]);
-      });
 }
 
 void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) const {

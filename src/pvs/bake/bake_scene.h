@@ -9,6 +9,7 @@
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/pvs/bake/bake.h"
 #include "src/pvs/bake/cell_region.h"
+#include "src/pvs/bake/cone_search.h"
 #include "src/pvs/bake/convex_occluder.h"
 #include "src/pvs/bake/door_groups.h"
 #include "src/pvs/bake/panels.h"
@@ -50,6 +51,8 @@ struct BakeScene {
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres
 
+  // Rounding moves a line of sight by far less than this, metres.
+  double lineMargin() const { return 0x1p-36 * (magnitude + reach); }
   // The convex occluders of a door, ascending.
   std::span<const std::uint32_t> occludersOfDoor(ObjectId door) const;
   // The leaf of an object, by its place in BoxTree::objects.
@@ -64,16 +67,21 @@ struct BakeScene {
   // The box of these: the sets of the cell are those of viewers anywhere in it. It lies within the region of
   // the cell's parent.
   CellBox regionOf(const OctreeCell& cell) const;
+  // Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
+  // without what keeps them from it. So it is where narrowing or dividing is asked for.
+  bool thorough() const;
   // Any cell down to this level may be divided; below it, only cells near occluders.
   std::uint32_t baseDepth() const { return base_depth_; }
   // True if the cell's depth allows dividing it.
   bool mayDivide(const OctreeCell& cell) const;
   // Appends, in ascending order, the occluders that intersect the box and are useful to cells of this level.
   void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
-  // Appends those of them that a line may meet, in any order. margin: how close to an occluder's box a line
-  // may come without missing it, metres.
-  void findOccludersAlong(const Vec3d& from, const Vec3d& to, double margin, const CellBox& box,
-                          std::uint32_t level, std::vector<std::uint32_t>& found) const;
+  // Those that are useful to cells of this level, for searches along lines of sight.
+  const ConeTree& occludersInCones(std::uint32_t level) const { return levels_[level].cones; }
+  // Lines of sight from the point to the box.
+  Cone coneTo(const CellBox& box, const Vec3d& point) const {
+    return {point, box, lineMargin(), magnitude + reach};
+  }
   // Appends the faces that intersect the box.
   void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
   // True if some occluder that intersects the box is too small for cells of this level but useful to smaller
@@ -96,6 +104,7 @@ struct BakeScene {
   struct LevelOccluders {
     std::vector<std::uint32_t> occluders;  // ascending
     BoxTree tree;                          // its objects are indices into `occluders`
+    ConeTree cones{};                      // of the same boxes, by number of the occluder
   };
   std::size_t indexOf(ObjectId door) const;  // into doors.all
   void chooseDepth();

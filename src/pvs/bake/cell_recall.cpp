@@ -9,8 +9,6 @@
 namespace sightline::pvs {
 namespace {
 
-// Rounding moves a line of sight by far less than this, in units of the coordinates.
-constexpr double kLineMargin = 0x1p-36;
 // If more boxes differ, the earlier answers help little.
 constexpr std::size_t kMostDiffering = 256;
 
@@ -31,7 +29,7 @@ bool mayPass(const Vec3d& from, const Box& to, const Box& box) {
 CellRecall::CellRecall(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
       recall_(recall),
-      line_margin_(kLineMargin * (scene.magnitude + scene.reach)),
+      line_margin_(scene.lineMargin()),
       occludes_(scene.boxes.objects.size()) {
   if (recall_ != nullptr) {
     answers_before_.emplace(*recall_);

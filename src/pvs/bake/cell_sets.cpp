@@ -42,6 +42,7 @@ void append(std::uint32_t position, Runs& runs) {
 CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
       recall_(scene, recall),
+      search_(scene),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
       surfaces_(scene, scene.panels),
       closed_doors_(scene, samples_) {}
@@ -53,6 +54,7 @@ void CellBaker::startCell(const OctreeCell& cell) {
 
 BakeStats CellBaker::stats() const {
   BakeStats stats = samples_.stats();
+  stats.shadows += search_.shadowCount();
   stats.questions = questions_;
   stats.asked = asked_;
   return stats;
@@ -74,10 +76,11 @@ bool CellBaker::tooLargeForItsOccluders(const OctreeCell& cell) const {
 }
 
 void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level) {
-  choice_ = {.cell = scene_.boxOf(cell),
-             .search = searchBox(cell, search_distance),
-             .distance = search_distance,
-             .level = level};
+  choice_ = Choice();
+  choice_.cell = scene_.boxOf(cell);
+  choice_.search = searchBox(cell, search_distance);
+  choice_.distance = search_distance;
+  choice_.level = level;
   chosen_.clear();
 }
 
@@ -141,8 +144,13 @@ void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
   if (sets.plane) {
     const SideCorners sides(box, *sets.plane, scene_.side_margin);
-    removeHiddenFrom(sides.front, WitnessPart::kFront, sets.front);
-    removeHiddenFrom(sides.back, WitnessPart::kBack, sets.back);
+    const auto removeFrom = [&](std::span<const Vec3d> corners, WitnessPart part, Runs& side) {
+      intersect(side, sets.whole, scratch_);
+      side.swap(scratch_);
+      removeHiddenFrom(corners, part, side);
+    };
+    removeFrom(sides.front, WitnessPart::kFront, sets.front);
+    removeFrom(sides.back, WitnessPart::kBack, sets.back);
   }
 }
 
@@ -289,10 +297,37 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
   recall_.keep(std::move(answer));
 }
 
+void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
+  if (scene_.settings.sample_bytes > 0) {
+    hideBySamples(corners);
+    return;
+  }
+  const std::span<const ConvexSearch::Found> found = search_.hiddenFrom(corners, choice_, hidden_);
+  if (scene_.settings.witnesses) {
+    recordFound(found);
+  }
+  for (const ConvexSearch::Found& by_one : found) {
+    hidden_.add({&by_one.objects, 1});
+  }
+}
+
+void CellBaker::recordFound(std::span<const ConvexSearch::Found> found) {
+  std::vector<ConvexSearch::Found> sorted(found.begin(), found.end());
+  std::ranges::sort(sorted, {}, [](const auto& f) { return std::pair(f.occluder, f.objects.begin); });
+  for (std::size_t i = 0; i < sorted.size();) {
+    common_.clear();
+    const std::uint32_t occluder = sorted[i].occluder;
+    for (; i < sorted.size() && sorted[i].occluder == occluder; ++i) {
+      common_.push_back(sorted[i].objects);
+    }
+    recordConvex(occluder, common_);
+  }
+}
+
 // Skips an occluder whose object is already hidden. What such an occluder hides is hidden by that which hides
 // its object (docs/conservative.md, "Sets from regions"). So an object is hidden if and only if some chosen
 // occluder of an object that was not hidden before hides it, in whatever order they are asked.
-void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
+void CellBaker::hideBySamples(std::span<const Vec3d> corners) {
   std::vector<Sample*> samples;
   for (const Vec3d& corner : corners) {
     samples.push_back(&samples_.at(corner));
@@ -319,7 +354,7 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
       bool hidden = known == CellRecall::Known::kHidden;
       if (known == CellRecall::Known::kNothing) {
         ++asked_;
-        hidden = hiddenByOne(corners, i);
+        hidden = search_.hides(corners, choice_, hidden_, i);
       }
       if (hidden) {
         append(i, common_);
@@ -328,22 +363,6 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
   }
   hidden_.add(common_);
   return true;
-}
-
-bool CellBaker::hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position) {
-  along_.clear();
-  scene_.findOccludersAlong(corners[0], center(scene_.leafOf(position).bounds), recall_.lineMargin(),
-                            choice_.search, choice_.level, along_);
-  return std::any_of(along_.begin(), along_.end(), [&](std::uint32_t i) {
-    const ConvexOccluder& occluder = scene_.occluders[i];
-    return !(choice_.known && intersects(*choice_.known, occluder.bounds)) &&
-           !hidden_.contains(scene_.position_of[occluder.object.value]) &&
-           separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
-           std::all_of(corners.begin(), corners.end(), [&](const Vec3d& eye) {
-             return makeShadow(scene_.occluders, occluder, eye, scene_.reach, shadow_) &&
-                    scene_.shadow_tree.hides(shadow_, position);
-           });
-  });
 }
 
 std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets) {
@@ -378,7 +397,13 @@ bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
     }
   }
   ++asked_;
-  answer.least = answer.most = trianglesSeenFrom(eye);
+  if (scene_.settings.sample_bytes > 0) {
+    answer.least = answer.most = trianglesSeenFrom(eye);
+  } else {
+    const ConvexSearch::Bounds seen = search_.trianglesSeenFrom(eye, choice_, triangles);
+    answer.least = seen.least;
+    answer.most = seen.most;
+  }
   const bool fewer = static_cast<double>(answer.most) < triangles;
   recall_.keep(std::move(answer));
   return fewer;

@@ -11,6 +11,7 @@
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_recall.h"
 #include "src/pvs/bake/closed_doors.h"
+#include "src/pvs/bake/convex_search.h"
 #include "src/pvs/bake/node_occlusion.h"
 #include "src/pvs/bake/object_mask.h"
 #include "src/pvs/bake/samples.h"
@@ -62,13 +63,9 @@ class CellBaker {
   void startCell(const OctreeCell& cell);
   bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
-  // The occluders that count: those in the search box that are useful to cells of a level, without those in
-  // the smaller box that was searched before.
-  struct Choice {
-    CellBox cell, search;
-    std::optional<CellBox> known{};
+  struct Choice : OccluderChoice {
+    CellBox cell{};
     double distance = 0.0, distance_before = 0.0;  // of the search boxes, metres
-    std::uint32_t level = 0;
   };
   void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
   // Finds them, those that look largest from the cell first.
@@ -80,8 +77,8 @@ class CellBaker {
   void hideByChosen(std::span<const Vec3d> corners);
   // The same by what an earlier bake found. False, with nothing added, if too much has changed for that.
   bool hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen);
-  // Whether a chosen occluder hides the object at this place from all corners.
-  bool hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position);
+  // The same by samples, which are kept.
+  void hideBySamples(std::span<const Vec3d> corners);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
   void removeFused(const CellBox& box, CellSets& sets);
   void removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen);
@@ -96,24 +93,25 @@ class CellBaker {
   bool seesFewer(const Vec3d& eye, double triangles);
   // Records, if it is asked for, that these objects are hidden, as far as hidden_ does not hold them yet.
   void recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects);
+  void recordFound(std::span<const ConvexSearch::Found> found);
   void recordSurfaces(const ObjectRun& objects);
   void record(HidingWitness witness, std::span<const ObjectRun> objects);
 
   const BakeScene& scene_;
   CellRecall recall_;
+  ConvexSearch search_;
   SampleStore samples_;
   NodeOcclusion surfaces_;
   ClosedDoors closed_doors_;
   // Scratch for the current cell.
   Choice choice_;
-  std::vector<std::uint32_t> chosen_, along_;
+  std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
   ObjectMask hidden_;
   Runs common_, scratch_;
   std::vector<std::uint32_t> hidden_nodes_;
   std::vector<CoarseBox> followed_;
-  Shadow shadow_;
   std::uint64_t questions_ = 0, asked_ = 0, work_ = 0;
   std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell

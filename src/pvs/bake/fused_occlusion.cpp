@@ -18,9 +18,6 @@ namespace {
 // A component of more panels is taken for open, which bounds the time. A box of several objects is rarely
 // hidden as a whole.
 constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
-// So often is a question asked again without what spoiled it. Spoilers are mostly the floor below the region
-// and what is joined with it.
-constexpr std::uint32_t kMostRepeats = 4;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
@@ -83,8 +80,12 @@ bool anySheet(const Panels& panels, std::uint32_t number, Visit&& visit) {
 
 }  // namespace
 
-FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
-    : panels_(panels), magnitude_(magnitude), places_(panels.panels.size()), beyond_(panels.vertices.size()) {
+FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude, std::uint32_t most_repeats)
+    : panels_(panels),
+      magnitude_(magnitude),
+      most_repeats_(most_repeats),
+      places_(panels.panels.size()),
+      beyond_(panels.vertices.size()) {
   for (const Vec3d& vertex : panels.vertices) {
     magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }
@@ -123,13 +124,13 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   }
   spoilers_.clear();
   Answer answer = askWithout();
-  if (answer != Answer::kUndecided || spoilers_.empty()) {
+  if (answer != Answer::kUndecided || spoilers_.empty() || most_repeats_ == 0) {
     return answer;
   }
   if (seesAnyEnd()) {
     return Answer::kClear;
   }
-  for (std::uint32_t repeat = 0; repeat < kMostRepeats && answer != Answer::kHidden && !spoilers_.empty();
+  for (std::uint32_t repeat = 0; repeat < most_repeats_ && answer != Answer::kHidden && !spoilers_.empty();
        ++repeat) {
     left_out_.insert(left_out_.end(), spoilers_.begin(), spoilers_.end());
     spoilers_.clear();

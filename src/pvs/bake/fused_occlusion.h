@@ -25,9 +25,11 @@ class FusedOcclusion {
   // them surely does not.
   enum class Answer { kHidden, kClear, kUndecided };
 
-  // magnitude: an upper bound of the absolute coordinates of all regions and boxes that are asked about. The
-  // panels must outlive this.
-  FusedOcclusion(const Panels& panels, double magnitude);
+  // magnitude: an upper bound of the absolute coordinates of all regions and boxes that are asked about.
+  // most_repeats: how often a question is asked again without the objects that keep a surface from hiding
+  // anything, mostly the floor below the region and what is joined with it. The panels must outlive this.
+  FusedOcclusion(const Panels& panels, double magnitude, std::uint32_t most_repeats = kMostRepeats);
+  static constexpr std::uint32_t kMostRepeats = 4;
 
   // near_distance: what is closer to the region, in metres, hides nothing.
   Answer ask(const CellBox& region, const FusedTarget& target, double near_distance);
@@ -89,6 +91,7 @@ class FusedOcclusion {
 
   const Panels& panels_;
   double magnitude_;
+  std::uint32_t most_repeats_;
   double error_;         // of a coordinate relative to another point, metres
   double sheet_margin_;  // around the corners of a sheet in single precision, metres
 

@@ -13,9 +13,6 @@ namespace {
 
 // In scenes of more triangles, mostly foliage, those that penetrate each other make too many pieces.
 constexpr std::uint32_t kMostPenetrating = 500'000;
-// Of a panel. One that reaches around the end of a wall would join what is before the wall with what is
-// behind it.
-constexpr std::uint32_t kMostSheets = 4;
 constexpr double kLeastCosine = 0.98;  // of the angle between normals of a panel
 constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -68,6 +65,8 @@ void joinAround(std::span<const HalfEdge> around, std::vector<std::uint32_t>& jo
 
 class PanelMaker {
  public:
+  explicit PanelMaker(std::uint32_t most_sheets) : most_sheets_(most_sheets) {}
+
   Panels make(const SceneView& scene, const ParallelFor& parallel_for) && {
     divideTriangles(scene, parallel_for);
     join();
@@ -183,7 +182,7 @@ class PanelMaker {
           }
           const std::uint32_t other = sheetOf(joined_[half_edge]);
           if (panel_of[other] == kNoPanel && object_of_[other] == object_of_[seed] &&
-              dot(normals[other], normals[seed]) >= kLeastCosine && order.size() - first < kMostSheets) {
+              dot(normals[other], normals[seed]) >= kLeastCosine && order.size() - first < most_sheets_) {
             take(other);
           }
         }
@@ -289,6 +288,7 @@ class PanelMaker {
     std::uint32_t self = 0;              // itself, from the first one on
   };
   std::vector<RingPlace> ring_of_;  // by half-edge
+  std::uint32_t most_sheets_;       // of a panel
   // Scratch for one edge.
   std::vector<std::uint32_t> pairs_;
   std::vector<std::pair<double, HalfEdge>> angles_;
@@ -296,8 +296,8 @@ class PanelMaker {
 
 }  // namespace
 
-Panels findPanels(const SceneView& scene, const ParallelFor& parallel_for) {
-  return PanelMaker().make(scene, parallel_for);
+Panels findPanels(const SceneView& scene, std::uint32_t most_sheets, const ParallelFor& parallel_for) {
+  return PanelMaker(most_sheets).make(scene, parallel_for);
 }
 
 }  // namespace sightline::pvs

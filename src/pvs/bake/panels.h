@@ -99,8 +99,13 @@ std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& isOut) c
   return kNoPanel;
 }
 
+// How many sheets a panel has at most. One that reaches around the end of a wall joins what is before the
+// wall with what is behind it, so small panels hide more; large ones are fewer, and asked about faster.
+inline constexpr std::uint32_t kSmallPanel = 4, kLargePanel = 32;
+
 // Makes panels of all opaque triangles that may be occluders and are finite. The result does not depend on
 // the threads.
-Panels findPanels(const SceneView& scene, const ParallelFor& parallel_for = serialFor);
+Panels findPanels(const SceneView& scene, std::uint32_t most_sheets = kSmallPanel,
+                  const ParallelFor& parallel_for = serialFor);
 
 }  // namespace sightline::pvs

@@ -59,8 +59,9 @@ bool narrowToLines(CellBox& box, const CellBox& first, const CellBox& second, in
 
 }  // namespace
 
-RegionOcclusion::RegionOcclusion(const Panels& panels, double near_distance, double magnitude)
-    : fused_(panels, magnitude), near_distance_(near_distance) {}
+RegionOcclusion::RegionOcclusion(const Panels& panels, double near_distance, double magnitude,
+                                 std::uint32_t most_repeats)
+    : fused_(panels, magnitude, most_repeats), near_distance_(near_distance) {}
 
 bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort) {
   return decide(region, target, effort) == Answer::kHidden;

@@ -22,8 +22,10 @@ struct RegionEffort {
 class RegionOcclusion {
  public:
   // near_distance: what is closer to a viewer, in metres, hides nothing. magnitude: an upper bound of the
-  // absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
-  RegionOcclusion(const Panels& panels, double near_distance, double magnitude);
+  // absolute coordinates of all regions and boxes that are asked about. most_repeats: see FusedOcclusion. The
+  // panels must outlive this.
+  RegionOcclusion(const Panels& panels, double near_distance, double magnitude,
+                  std::uint32_t most_repeats = FusedOcclusion::kMostRepeats);
 
   // True only if no point of the target can be seen from any point of the region.
   bool hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort);

@@ -40,6 +40,7 @@ class TriangleCounts {
     }
     return sum;
   }
+  std::uint64_t all() const { return before_.back(); }
 
  private:
   std::vector<std::uint64_t> before_;  // triangles of all objects before a position

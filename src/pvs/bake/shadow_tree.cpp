@@ -109,6 +109,26 @@ class Traversal {
   std::size_t first_run_;
 };
 
+// The lanes, from this node on, that are behind all planes. The operations and their order are those of
+// Traversal::classify().
+template <class D>
+hn::Mask<D> behindAll(D d, const ShadowTree::Arrays& tree, const Shadow& shadow, std::uint32_t node) {
+  const auto x = hn::Sub(hn::LoadU(d, tree.cx.data() + node), hn::Set(d, shadow.eye.x));
+  const auto y = hn::Sub(hn::LoadU(d, tree.cy.data() + node), hn::Set(d, shadow.eye.y));
+  const auto z = hn::Sub(hn::LoadU(d, tree.cz.data() + node), hn::Set(d, shadow.eye.z));
+  const auto hx = hn::LoadU(d, tree.hx.data() + node), hy = hn::LoadU(d, tree.hy.data() + node);
+  const auto hz = hn::LoadU(d, tree.hz.data() + node);
+  auto behind = hn::FirstN(d, shadow.count == 0 ? 0 : hn::Lanes(d));  // a shadow without planes hides nothing
+  for (std::uint32_t p = 0; p < shadow.count && !hn::AllFalse(d, behind); ++p) {
+    const auto nx = hn::Set(d, shadow.nx[p]), ny = hn::Set(d, shadow.ny[p]), nz = hn::Set(d, shadow.nz[p]);
+    const auto middle = hn::Add(hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)), hn::Mul(nz, z));
+    const auto half =
+        hn::Add(hn::Add(hn::Mul(hn::Abs(nx), hx), hn::Mul(hn::Abs(ny), hy)), hn::Mul(hn::Abs(nz), hz));
+    behind = hn::And(behind, hn::Ge(hn::Sub(middle, half), hn::Set(d, shadow.offset[p])));
+  }
+  return behind;
+}
+
 void traverse(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs) {
   std::array<std::uint8_t, kMaxShadowPlanes> planes;
   for (std::uint32_t p = 0; p < shadow.count; ++p) {
@@ -117,6 +137,24 @@ void traverse(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<
   if (shadow.count > 0 && !tree.nodes.empty()) {
     Traversal(tree, shadow, runs).visit(0, 1, planes.data(), shadow.count);
   }
+}
+
+std::uint32_t hiddenNodes(const ShadowTree::Arrays& tree, std::span<const Shadow> shadows,
+                          std::uint32_t first, std::uint32_t count) {
+  const hn::CappedTag<double, ShadowTree::kGroup> d;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < count; i += lanes) {
+    const std::uint32_t at = first + i;
+    auto behind = hn::FirstN(d, std::min(count - i, lanes));
+    for (std::size_t s = 0; s < shadows.size() && !hn::AllFalse(d, behind); ++s) {
+      behind = hn::And(behind, behindAll(d, tree, shadows[s], at));
+    }
+    std::uint8_t some[8] = {};
+    hn::StoreMaskBits(d, behind, some);
+    bits |= std::uint32_t{some[0]} << i;
+  }
+  return bits;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -128,6 +166,7 @@ namespace sightline::pvs {
 namespace {
 
 HWY_EXPORT(traverse);
+HWY_EXPORT(hiddenNodes);
 
 constexpr std::size_t kMinChildren = 8;  // inner nodes are dissolved until there are about this many
 // At this depth, a node's children are all its leaves, which bounds the recursion.
@@ -291,6 +330,11 @@ bool ShadowTree::hides(const Shadow& shadow, std::uint32_t position) const {
     }
   }
   return shadow.count > 0;
+}
+
+std::uint32_t ShadowTree::hidden(std::span<const Shadow> shadows, std::uint32_t first,
+                                 std::uint32_t count) const {
+  return HWY_DYNAMIC_DISPATCH(hiddenNodes)(arrays_, shadows, first, count);
 }
 
 void ShadowTree::hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const {

@@ -2,10 +2,13 @@
 
 // Finds the objects in a shadow with a tree of boxes, laid out to test several boxes at a time.
 
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sightline/hierarchy/box_tree.h"
+#include "src/pvs/bake/cell_region.h"
 #include "src/pvs/bake/runs.h"
 #include "src/pvs/bake/shadow.h"
 
@@ -30,6 +33,22 @@ class ShadowTree {
     std::uint32_t first_child = 0, child_count = 0;  // indices of nodes
     ObjectRun objects;
   };
+  // Node 0 is the root; there is none without boxes.
+  std::span<const Node> nodes() const { return arrays_.nodes; }
+  // Bits of those of the nodes first ... first + count - 1, at most kGroup, that each of the shadows hides,
+  // with all that is below them.
+  std::uint32_t hidden(std::span<const Shadow> shadows, std::uint32_t first, std::uint32_t count) const;
+  static constexpr std::uint32_t kGroup = 8;
+  // False if something below the node is empty or not finite, and so is its box.
+  bool mayBeHidden(std::uint32_t node) const { return std::isfinite(arrays_.hx[node]); }
+  Vec3d centreOf(std::uint32_t node) const { return {arrays_.cx[node], arrays_.cy[node], arrays_.cz[node]}; }
+  CellBox boxOf(std::uint32_t node) const {
+    const Vec3d half{arrays_.hx[node], arrays_.hy[node], arrays_.hz[node]};
+    return {centreOf(node) - half, centreOf(node) + half};
+  }
+  // The leaf of an object, by its place in BoxTree::objects.
+  std::uint32_t leafAt(std::uint32_t position) const { return leaf_of_[position]; }
+
   // Read by the vector code. Node 0 is the root. Padded, so that a whole vector can be read starting at any
   // node.
   struct Arrays {

@@ -3,6 +3,7 @@
 // The options of `bake` and the library's settings that they stand for.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,9 @@ struct BakeOptions {
   std::string occlusion = "convex";
   std::string doors;  // see doorsOf; empty: none
   ViewerOptions viewers;
-  std::uint32_t sample_mib = 1024;
-  std::string databases;       // names, separated by commas
-  std::string viewpoint_path;  // a camera path; empty: none
+  std::optional<std::uint32_t> sample_mib{};  // none: chosen by the scene
+  std::string databases;                      // names, separated by commas
+  std::string viewpoint_path;                 // a camera path; empty: none
   ViewpointDatabaseSettings viewpoints{};
   bool resume = false, restart = false;
   bool force = false;  // overwrites a file even if it is not a baked one

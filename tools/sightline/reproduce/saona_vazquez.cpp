@@ -56,6 +56,7 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
                          const ReproduceOptions& options) {
   BakeOptions bake;
   bake.common.threads = options.threads;
+  bake.sample_mib = 1024;  // samples are kept, as in the paper
   bake.settings.triangle_budget = options.triangle_budget;
   if (options.depth > 0 || options.fewer_frames) {
     bake.settings.max_depth = options.depth > 0 ? options.depth : kShortDepth;

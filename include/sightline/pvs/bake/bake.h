@@ -77,7 +77,9 @@ struct BakeSettings {
   // kMaxObjectBoxes; 1: its own box alone. box_margin: ObjectBoxesSettings::margin, metres.
   std::uint32_t object_boxes = kMaxObjectBoxes;
   double box_margin = 0.0;
-  // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
+  // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again. 0: none
+  // are kept, and what may hide a box is found by lines of sight, which takes little memory, and less time
+  // where objects are many, tens of thousands, or cells small. The sets are the same.
   std::size_t sample_bytes = 256u << 20;
   bool witnesses = false;  // records what hides objects; see Bake::witnesses. The sets stay the same
   bool answers = false;    // records what was asked; see Bake::answers. The sets stay the same

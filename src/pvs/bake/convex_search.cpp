@@ -1,0 +1,240 @@
+#include "src/pvs/bake/convex_search.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "src/pvs/bake/segment.h"
+
+namespace sightline::pvs {
+namespace {
+
+// If no more occluders than this are in the cone to a node, they are listed for what is below it.
+constexpr std::size_t kMostCandidates = 8192;
+// A list of no more than this is used for all that is below, without leaving out more of it.
+constexpr std::size_t kFewCandidates = 32;
+
+}  // namespace
+
+ConvexSearch::ConvexSearch(const BakeScene& scene) : scene_(scene) {
+  for (Shadows& shadows : shadows_) {
+    shadows.of_corner.resize(kMaxCorners);
+  }
+  nothing_.reset(static_cast<std::uint32_t>(scene.boxes.objects.size()));
+}
+
+void ConvexSearch::start(std::span<const Vec3d> corners, const OccluderChoice& choice,
+                         const ObjectMask& known) {
+  corners_ = corners;
+  choice_ = &choice;
+  known_ = &known;
+  enough_ = std::nullopt;
+  hidden_triangles_ = seen_triangles_ = 0;
+  found_.clear();
+  recent_ = 0;
+}
+
+std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Vec3d> corners,
+                                                              const OccluderChoice& choice,
+                                                              const ObjectMask& known) {
+  start(corners, choice, known);
+  if (!corners.empty() && corners.size() <= kMaxCorners && !scene_.shadow_tree.nodes().empty()) {
+    visit(0, 1, nullptr, 0);
+  }
+  return found_;
+}
+
+ConvexSearch::Bounds ConvexSearch::trianglesSeenFrom(const Vec3d& eye, const OccluderChoice& choice,
+                                                     double enough) {
+  start(std::span(&eye, 1), choice, nothing_);
+  enough_ = enough;
+  if (!scene_.shadow_tree.nodes().empty()) {
+    visit(0, 1, nullptr, 0);
+  }
+  return {seen_triangles_, scene_.triangles.all() - hidden_triangles_};
+}
+
+bool ConvexSearch::done() const {
+  return enough_ && (static_cast<double>(seen_triangles_) >= *enough_ ||
+                     static_cast<double>(scene_.triangles.all() - hidden_triangles_) < *enough_);
+}
+
+bool ConvexSearch::hides(std::span<const Vec3d> corners, const OccluderChoice& choice,
+                         const ObjectMask& known, std::uint32_t position) {
+  start(corners, choice, known);
+  const std::uint32_t leaf = scene_.shadow_tree.leafAt(position);
+  return hideByAny(leaf, nullptr, leaf, 1, 1) != 0;
+}
+
+bool ConvexSearch::visit(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth) {
+  for (std::uint32_t i = 0; i < count; i += ShadowTree::kGroup) {
+    if (!visitGroup(first + i, std::min(count - i, ShadowTree::kGroup), candidates, depth)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool ConvexSearch::visitGroup(std::uint32_t first, std::uint32_t count, Candidates candidates,
+                              std::size_t depth) {
+  const std::span<const ShadowTree::Node> nodes = scene_.shadow_tree.nodes();
+  std::uint32_t left = 0;  // bits of the nodes that nothing has been found to hide
+  for (std::uint32_t i = 0; i < count; ++i) {
+    left |= known_->containsAll(nodes[first + i].objects) ? 0u : 1u << i;
+  }
+  left &= ~hideByRecent(first, count, left);
+  std::uint32_t seen = 0;
+  while ((left & ~seen) != 0) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left & ~seen));
+    const std::uint32_t hidden = hideByAny(first + i, candidates, first, count, left);
+    left &= ~hidden;
+    seen |= hidden == 0 ? 1u << i : 0u;
+  }
+  seen = left;
+  for (; seen != 0 && !done(); seen &= seen - 1) {
+    const std::uint32_t node = first + static_cast<std::uint32_t>(std::countr_zero(seen));
+    if (nodes[node].child_count == 0) {
+      seen_triangles_ += scene_.triangles.of({&nodes[node].objects, 1});
+    } else if (!visitBelow(node, candidates, depth)) {
+      return false;
+    }
+  }
+  return !done();
+}
+
+bool ConvexSearch::visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth) {
+  candidates = candidatesIn(scene_.shadow_tree.boxOf(node), candidates, depth);
+  const ShadowTree::Node& inner = scene_.shadow_tree.nodes()[node];
+  if (candidates != nullptr && candidates->size() == 0) {
+    seen_triangles_ += scene_.triangles.of({&inner.objects, 1});
+    return !done();
+  }
+  return visit(inner.first_child, inner.child_count, candidates, depth + 1);
+}
+
+ConvexSearch::Candidates ConvexSearch::candidatesIn(const CellBox& box, Candidates above, std::size_t depth) {
+  if (above != nullptr && above->size() <= kFewCandidates) {
+    return above;
+  }
+  if (candidates_.size() <= depth) {
+    candidates_.emplace_back();
+  }
+  BoxLanes& below = candidates_[depth];
+  const auto cone = [&](std::size_t corner) { return scene_.coneTo(box, corners_[corner]); };
+  const std::size_t last = corners_.size() - 1;
+  const std::array cones{cone(0), cone(std::min<std::size_t>(1, last)), cone(last), cone(last / 2)};
+  below.clear();
+  if (above != nullptr) {
+    below.add(*above, placesMet(*above, cones, places_));
+  } else if (scene_.occludersInCones(choice_->level).find(cones, kMostCandidates, places_)) {
+    for (const std::uint32_t i : places_) {
+      if (counts(i)) {
+        below.add(scene_.occluders[i].bounds, i);
+      }
+    }
+  } else {
+    return nullptr;
+  }
+  below.pad();
+  return &below;
+}
+
+std::uint32_t ConvexSearch::hideByRecent(std::uint32_t first, std::uint32_t count, std::uint32_t left) {
+  std::uint32_t all = 0;
+  for (std::size_t i = 0; i < recent_ && (left & ~all) != 0; ++i) {
+    const std::uint32_t hidden =
+        scene_.shadow_tree.hidden(std::span(shadows_[i].of_corner).first(corners_.size()), first, count) &
+        left & ~all;
+    if (hidden != 0) {
+      report(shadows_[i].occluder, first, hidden);
+      all |= hidden;
+      std::rotate(shadows_.begin(), shadows_.begin() + static_cast<std::ptrdiff_t>(i),
+                  shadows_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+  }
+  return all;
+}
+
+std::uint32_t ConvexSearch::hideByAny(std::uint32_t node, Candidates candidates, std::uint32_t first,
+                                      std::uint32_t count, std::uint32_t left) {
+  if (!scene_.shadow_tree.mayBeHidden(node)) {
+    return 0;
+  }
+  findMet(node, candidates);
+  std::sort(met_.begin(), met_.end());  // occluders are numbered from the largest on
+  Shadows& shadows = shadows_.back();
+  for (const std::uint32_t i : met_) {
+    if (mayHide(i, node) && makeShadows(i, node, shadows)) {
+      const std::span<const Shadow> of_corners = std::span(shadows.of_corner).first(corners_.size());
+      const std::uint32_t hidden = scene_.shadow_tree.hidden(of_corners, first, count) & left;
+      report(i, first, hidden);
+      std::rotate(shadows_.begin(), shadows_.end() - 1, shadows_.end());
+      recent_ = std::min(recent_ + 1, kRecent);
+      return hidden;
+    }
+  }
+  return 0;
+}
+
+void ConvexSearch::findMet(std::uint32_t node, Candidates candidates) {
+  const CellBox box = scene_.shadow_tree.boxOf(node);
+  const auto line = [&](std::size_t corner, const Vec3d& to) {
+    return scene_.coneTo({to, to}, corners_[corner]);
+  };
+  const std::size_t last = corners_.size() - 1;
+  const std::array lines{line(0, box.centre()), line(std::min<std::size_t>(1, last), box.centre()),
+                         line(last, box.corner(0)), line(last / 2, box.corner(7))};
+  if (candidates == nullptr) {
+    scene_.occludersInCones(choice_->level).find(lines, scene_.occluders.size(), met_);
+    std::erase_if(met_, [this](std::uint32_t i) { return !counts(i); });
+    return;
+  }
+  met_.clear();
+  for (const std::uint32_t place : placesMet(*candidates, lines, places_)) {
+    met_.push_back(candidates->number[place]);
+  }
+}
+
+bool ConvexSearch::counts(std::uint32_t i) const {
+  const ConvexOccluder& occluder = scene_.occluders[i];
+  return intersects(choice_->search, occluder.bounds) &&
+         !(choice_->known && intersects(*choice_->known, occluder.bounds)) &&
+         !known_->contains(scene_.position_of[occluder.object.value]);
+}
+
+bool ConvexSearch::mayHide(std::uint32_t i, std::uint32_t node) {
+  const ConvexOccluder& occluder = scene_.occluders[i];
+  const CellBox box = scene_.shadow_tree.boxOf(node);
+  // From each corner, lines to two opposite corners of the box.
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+    for (const std::uint32_t end : {c % 8, 7 - c % 8}) {
+      if (SegmentTest(corners_[c], box.corner(end), scene_.lineMargin()).misses(occluder.bounds)) {
+        return false;
+      }
+    }
+  }
+  return separated(scene_.occluders, occluder, corners_, scene_.settings.near_distance);
+}
+
+bool ConvexSearch::makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows) {
+  shadows.occluder = occluder;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    ++shadow_count_;
+    Shadow& shadow = shadows.of_corner[c];
+    if (!makeShadow(scene_.occluders, scene_.occluders[occluder], corners_[c], scene_.reach, shadow) ||
+        scene_.shadow_tree.hidden({&shadow, 1}, node, 1) == 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void ConvexSearch::report(std::uint32_t occluder, std::uint32_t first, std::uint32_t nodes) {
+  for (; nodes != 0; nodes &= nodes - 1) {
+    const ObjectRun& objects =
+        scene_.shadow_tree.nodes()[first + static_cast<std::uint32_t>(std::countr_zero(nodes))].objects;
+    found_.push_back({occluder, objects});
+    hidden_triangles_ += scene_.triangles.of({&objects, 1});
+  }
+}
+
+}  // namespace sightline::pvs

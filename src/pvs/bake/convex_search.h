@@ -1,0 +1,117 @@
+#pragma once
+
+// What single convex occluders hide from a region or a point, found by lines of sight: an occluder that hides
+// a box from all of the region meets each line from there to the box. So a few lines leave few occluders, and
+// the time follows what is seen, not how many occluders there are.
+//
+// The box tree is searched from the root down. A node that an occluder hides ends its branch. To what is
+// below others, occluders are passed on that lie in the cones from some corners of the region to the node.
+// What one occluder hides is often next to what it hid before, so the last ones are asked first.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/object_mask.h"
+
+namespace sightline::pvs {
+
+// The occluders that count for a region: those in the search box that are useful to cells of a level, without
+// those in the smaller box that was searched before.
+struct OccluderChoice {
+  CellBox search{};
+  std::optional<CellBox> known{};
+  std::uint32_t level = 0;
+};
+
+// Use by one thread at a time.
+class ConvexSearch {
+ public:
+  // scene must outlive this.
+  explicit ConvexSearch(const BakeScene& scene);
+
+  // Objects that an occluder hides.
+  struct Found {
+    std::uint32_t occluder = 0;
+    ObjectRun objects{};
+  };
+  // All that is hidden from the region with these corners, at most kMaxCorners of them, without what `known`
+  // holds. Occluders of objects that are known to be hidden do not count: something else hides what they
+  // hide. In any order. Valid until the next call.
+  std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
+                                    const ObjectMask& known);
+  // Bounds of the triangles that a point sees: both are below `enough`, or neither is.
+  struct Bounds {
+    std::uint64_t least = 0, most = 0;
+  };
+  Bounds trianglesSeenFrom(const Vec3d& eye, const OccluderChoice& choice, double enough);
+
+  // Whether an occluder hides the object at this place of BoxTree::objects from the region.
+  bool hides(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known,
+             std::uint32_t position);
+
+  // Pairs of an occluder and a viewpoint that were asked about.
+  std::uint64_t shadowCount() const { return shadow_count_; }
+
+  static constexpr std::size_t kMaxCorners = 16;
+
+ private:
+  // The shadows of an occluder from all corners.
+  struct Shadows {
+    std::uint32_t occluder = 0;
+    std::vector<Shadow> of_corner{};
+  };
+  // Occluders, by their boxes, of which one has to meet each line of sight to what is to be hidden. Null: all
+  // that may count.
+  using Candidates = const BoxLanes*;
+  void start(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known);
+  // Visits nodes of the shadow tree that are the children of one, and what is below them. depth: of these
+  // nodes. False once done() holds.
+  bool visit(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth);
+  bool visitGroup(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth);
+  bool visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth);
+  // Bits of the nodes of a group that a recent occluder hides, out of those that are left.
+  std::uint32_t hideByRecent(std::uint32_t first, std::uint32_t count, std::uint32_t left);
+  // Looks for an occluder that hides the node, and returns bits of what it hides of the group; 0 if there is
+  // none.
+  std::uint32_t hideByAny(std::uint32_t node, Candidates candidates, std::uint32_t first, std::uint32_t count,
+                          std::uint32_t left);
+  // Sets met_ to the candidates that some lines from the corners to the node may meet.
+  void findMet(std::uint32_t node, Candidates candidates);
+  // Of the candidates those that may hide something in the box of a node, kept by its depth; null if they are
+  // too many.
+  Candidates candidatesIn(const CellBox& box, Candidates above, std::size_t depth);
+  // Whether the occluder is one of the choice, and not known to be superfluous.
+  bool counts(std::uint32_t occluder) const;
+  // Whether some lines from the corners to the node meet the occluder's box, and it is separated from them.
+  bool mayHide(std::uint32_t occluder, std::uint32_t node);
+  // Fills the shadows, as long as each hides the node; false if one does not.
+  bool makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows);
+  // Reports these nodes of a group as hidden.
+  void report(std::uint32_t occluder, std::uint32_t first, std::uint32_t nodes);
+  bool done() const;
+
+  const BakeScene& scene_;
+  // The current question.
+  std::span<const Vec3d> corners_;
+  const OccluderChoice* choice_ = nullptr;
+  const ObjectMask* known_ = nullptr;
+  std::optional<double> enough_;  // triangles; none: all that is hidden is to be found
+  std::uint64_t hidden_triangles_ = 0, seen_triangles_ = 0;
+  std::vector<Found> found_;
+  // Scratch.
+  static constexpr std::size_t kRecent = 2;
+  std::array<Shadows, kRecent + 1> shadows_;  // recent occluders, the last used one first; then one to fill
+  std::size_t recent_ = 0;
+  std::deque<BoxLanes> candidates_;  // by depth: of the nodes there that are open
+  std::vector<std::uint32_t> met_, places_;
+  ObjectMask nothing_;
+  std::uint64_t shadow_count_ = 0;
+};
+
+}  // namespace sightline::pvs

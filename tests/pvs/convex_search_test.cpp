@@ -1,0 +1,184 @@
+// What is found by lines of sight must be what asking every occluder about every object finds.
+
+#include "src/pvs/bake/convex_search.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "src/pvs/bake/shadow.h"
+#include "tests/pvs/bake_scenes.h"
+#include "tests/pvs/convex_scenes.h"
+
+namespace sightline::pvs {
+namespace {
+
+using test::allOccluders;
+using test::block;
+using test::Random;
+using test::sceneOf;
+
+// Walls, posts and crates around the middle, thick and thin.
+Scene randomTown(Random& random, std::uint32_t count) {
+  std::vector<Solid> solids;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d middle = random.point(40.0);
+    const double size = std::pow(10.0, random.in(-0.7, 0.9));
+    const Vec3d half(size * random.in(0.1, 1.0), size * random.in(0.3, 2.0), size * random.in(0.1, 1.0));
+    solids.push_back(block(Vec3f(middle - half), Vec3f(middle + half)));
+  }
+  return sceneOf(solids);
+}
+
+// By place in BoxTree::objects: whether some occluder that counts hides it from all corners.
+std::vector<bool> hiddenByAsking(const BakeScene& bake, std::span<const Vec3d> corners,
+                                 const OccluderChoice& choice, const ObjectMask& known) {
+  std::vector<bool> hidden(bake.boxes.objects.size());
+  std::vector<std::uint32_t> chosen;
+  bake.findOccluders(choice.search, choice.level, chosen);
+  for (const std::uint32_t i : chosen) {
+    const ConvexOccluder& occluder = bake.occluders[i];
+    if ((choice.known && intersects(*choice.known, occluder.bounds)) ||
+        known.contains(bake.position_of[occluder.object.value]) ||
+        !separated(bake.occluders, occluder, corners, bake.settings.near_distance)) {
+      continue;
+    }
+    std::vector<Shadow> shadows(corners.size());
+    bool casts = true;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      casts = casts && makeShadow(bake.occluders, occluder, corners[c], bake.reach, shadows[c]);
+    }
+    for (std::uint32_t at = 0; casts && at < hidden.size(); ++at) {
+      hidden[at] = hidden[at] || std::ranges::all_of(shadows, [&](const Shadow& shadow) {
+                     return bake.shadow_tree.hides(shadow, at);
+                   });
+    }
+  }
+  return hidden;
+}
+
+struct Town {
+  Scene scene;
+  OccluderSet occluders;
+  BakeScene bake;
+
+  explicit Town(std::uint64_t seed)
+      : scene(made(seed)),
+        occluders(allOccluders(scene)),
+        bake(scene.view(), occluders,
+             {.max_depth = 4, .near_distance = 0.01, .viewers = {{{-40, -40, -40}, {40, 40, 40}}}},
+             serialFor) {}
+  static Scene made(std::uint64_t seed) {
+    Random random(seed);
+    return randomTown(random, 20 + 40 * static_cast<std::uint32_t>(seed % 10));
+  }
+};
+
+CellBox cellAround(const Vec3d& middle, double half) {
+  return {middle - Vec3d{half, half, half}, middle + Vec3d{half, half, half}};
+}
+
+TEST(ConvexSearch, FindsWhatAskingAllOccludersFinds) {
+  std::size_t hidden_count = 0, seen_count = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Town town(seed);
+    const BakeScene& bake = town.bake;
+    const auto count = static_cast<std::uint32_t>(bake.boxes.objects.size());
+    ConvexSearch search(bake);
+    Random random(seed + 1000);
+    for (int trial = 0; trial < 12; ++trial) {
+      const CellBox cell = cellAround(random.point(35.0), std::pow(10.0, random.in(-1.0, 0.7)));
+      std::vector<Vec3d> corners = cornersOf(cell);
+      if (trial % 3 == 1) {
+        const Vec3d normal = test::randomDirection(random);
+        corners = cornersBefore(cell, normal, dot(normal, cell.centre()));
+      } else if (trial % 3 == 2) {
+        corners.resize(1);
+      }
+      OccluderChoice choice{.search = cellAround(cell.centre(), random.in(5.0, 200.0)), .level = 4};
+      if (trial % 4 == 3) {
+        choice.known = cellAround(cell.centre(), random.in(1.0, 20.0));
+      }
+      ObjectMask known;
+      known.reset(count);
+      for (std::uint32_t i = 0; trial % 2 == 1 && i < count; ++i) {
+        const ObjectRun run{i, i + 1};
+        known.add(std::span(&run, random.below(4) == 0 ? 1 : 0));
+      }
+      const std::vector<bool> expected = hiddenByAsking(bake, corners, choice, known);
+      ObjectMask found;
+      found.reset(count);
+      for (const ConvexSearch::Found& by_one : search.hiddenFrom(corners, choice, known)) {
+        found.add({&by_one.objects, 1});
+      }
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (known.contains(i)) {
+          continue;
+        }
+        ++(expected[i] ? hidden_count : seen_count);
+        EXPECT_EQ(found.contains(i), expected[i])
+            << "seed " << seed << ", trial " << trial << ", object " << i;
+        EXPECT_EQ(search.hides(corners, choice, known, i), expected[i])
+            << "seed " << seed << ", object " << i;
+      }
+    }
+  }
+  EXPECT_GT(hidden_count, 3000u);
+  EXPECT_GT(seen_count, 3000u);
+}
+
+TEST(ConvexSearch, BoundsWhatAPointSees) {
+  std::size_t fewer = 0, enough = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const Town town(seed);
+    const BakeScene& bake = town.bake;
+    ConvexSearch search(bake);
+    Random random(seed + 5);
+    ObjectMask none;
+    none.reset(static_cast<std::uint32_t>(bake.boxes.objects.size()));
+    for (int trial = 0; trial < 10; ++trial) {
+      const Vec3d eye = random.point(35.0);
+      const OccluderChoice choice{.search = cellAround(eye, 100.0), .level = 4};
+      const std::vector<bool> hidden = hiddenByAsking(bake, {&eye, 1}, choice, none);
+      std::uint64_t seen = 0;
+      for (std::uint32_t i = 0; i < hidden.size(); ++i) {
+        seen += hidden[i] ? 0 : bake.leafOf(i).triangles;
+      }
+      for (const double share : {0.1, 0.5, 0.9, 1.0, 1.1}) {
+        const double asked = share * static_cast<double>(seen);
+        const ConvexSearch::Bounds bounds = search.trianglesSeenFrom(eye, choice, asked);
+        EXPECT_LE(bounds.least, seen) << "seed " << seed;
+        EXPECT_GE(bounds.most, seen) << "seed " << seed;
+        const bool is_fewer = static_cast<double>(seen) < asked;
+        ++(is_fewer ? fewer : enough);
+        EXPECT_EQ(static_cast<double>(bounds.most) < asked, is_fewer) << "seed " << seed;
+        EXPECT_EQ(static_cast<double>(bounds.least) < asked, is_fewer) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(fewer, 100u);
+  EXPECT_GT(enough, 100u);
+}
+
+TEST(ConvexSearch, FindsTheSameOnEveryInstructionSet) {
+  const Town town(8);
+  const std::vector<Vec3d> corners = cornersOf(cellAround({3, 2, 1}, 0.5));
+  const OccluderChoice choice{.search = cellAround({3, 2, 1}, 60.0), .level = 4};
+  ObjectMask none;
+  none.reset(static_cast<std::uint32_t>(town.bake.boxes.objects.size()));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    ConvexSearch search(town.bake);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (const ConvexSearch::Found& by_one : search.hiddenFrom(corners, choice, none)) {
+      found.emplace_back(by_one.occluder, by_one.objects.begin);
+    }
+    expected = expected.empty() ? found : expected;
+    EXPECT_EQ(found, expected) << hwy::TargetName(target);
+    hwy::SetSupportedTargetsForTest(0);
+  }
+  EXPECT_GT(expected.size(), 5u);
+}
+
+}  // namespace
+}  // namespace sightline::pvs
