@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "src/pvs/bake/box_search.h"
-#include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
 namespace {

@@ -142,6 +142,11 @@ void CellRecall::compareNodes(const Answer* before) {
 }
 
 std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, const CellBox& region) const {
+  // Which objects are left out before a question is asked again depends on the order in which panels are
+  // followed, and so on all of the scene.
+  if (scene_.thorough()) {
+    return std::nullopt;
+  }
   const std::uint32_t same = nodes_before_.empty() ? Recall::kNone : recall_->nodeBefore(number);
   if (same == Recall::kNone || nodes_before_[same] == Known::kNothing) {
     return std::nullopt;
@@ -159,14 +164,8 @@ std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, con
 // An answer depends on the panels that the lines of sight of the question meet, and on those that were
 // followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
 // Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
-// Narrowing and dividing try lines of sight from elsewhere, so where they may have decided, all of the shaft
-// counts.
 bool CellRecall::holds(std::uint32_t number, const CellBox& region, const Box& decided_in) const {
   const Box& box = scene_.boxes.nodes[number].bounds;
-  const BakeSettings& settings = scene_.settings;
-  if (scene_.boxes.view().leaf(number) && (settings.narrowings > 0 || settings.divisions > 0)) {
-    return !recall_->panelsDiffer(region, box);
-  }
   const Vec3d start = FusedOcclusion::startOf(region);
   return (!recall_->panelsDiffer(decided_in) && !recall_->panelsDiffer({start, start}, box)) ||
          !recall_->panelsDiffer(region, box);

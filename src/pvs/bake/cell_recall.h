@@ -57,7 +57,6 @@ class CellRecall {
   bool boundTriangles(const Vec3d& eye, Answer& answer);
 
   // How close to the box of an occluder a line of sight may come without missing it, metres.
-  double lineMargin() const { return line_margin_; }
 
  private:
   // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each

@@ -42,8 +42,8 @@ struct BoxLanes {
   void pad();
 };
 
-// The places of the boxes that each cone meets, and of some that it almost does, ascending; the same on every
-// instruction set. Kept in `places`.
+// The places of the boxes that all of the cones meet, and of some that they almost do, ascending; the same on
+// every instruction set. Kept in `places`.
 std::span<const std::uint32_t> placesMet(const BoxLanes& boxes, std::span<const Cone> cones,
                                          std::vector<std::uint32_t>& places);
 
@@ -54,7 +54,7 @@ class ConeTree {
   // numbers: by box.
   ConeTree(std::span<const Box> boxes, std::span<const std::uint32_t> numbers);
 
-  // Sets `found` to the numbers of the boxes that each cone meets, and of some that it almost does. False,
+  // Sets `found` to the numbers of the boxes that all cones meet, and of some that they almost do. False,
   // with nothing of use in `found`, if they are more than `most`.
   bool find(std::span<const Cone> cones, std::size_t most, std::vector<std::uint32_t>& found) const;
 

@@ -22,7 +22,7 @@ ConvexSearch::ConvexSearch(const BakeScene& scene) : scene_(scene) {
   nothing_.reset(static_cast<std::uint32_t>(scene.boxes.objects.size()));
 }
 
-void ConvexSearch::start(std::span<const Vec3d> corners, const OccluderChoice& choice,
+bool ConvexSearch::start(std::span<const Vec3d> corners, const OccluderChoice& choice,
                          const ObjectMask& known) {
   corners_ = corners;
   choice_ = &choice;
@@ -31,13 +31,13 @@ void ConvexSearch::start(std::span<const Vec3d> corners, const OccluderChoice& c
   hidden_triangles_ = seen_triangles_ = 0;
   found_.clear();
   recent_ = 0;
+  return !corners.empty() && corners.size() <= kMaxCorners && !scene_.shadow_tree.nodes().empty();
 }
 
 std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Vec3d> corners,
                                                               const OccluderChoice& choice,
                                                               const ObjectMask& known) {
-  start(corners, choice, known);
-  if (!corners.empty() && corners.size() <= kMaxCorners && !scene_.shadow_tree.nodes().empty()) {
+  if (start(corners, choice, known)) {
     visit(0, 1, nullptr, 0);
   }
   return found_;
@@ -45,9 +45,9 @@ std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Ve
 
 ConvexSearch::Bounds ConvexSearch::trianglesSeenFrom(const Vec3d& eye, const OccluderChoice& choice,
                                                      double enough) {
-  start(std::span(&eye, 1), choice, nothing_);
+  const bool any = start(std::span(&eye, 1), choice, nothing_);
   enough_ = enough;
-  if (!scene_.shadow_tree.nodes().empty()) {
+  if (any) {
     visit(0, 1, nullptr, 0);
   }
   return {seen_triangles_, scene_.triangles.all() - hidden_triangles_};
@@ -60,7 +60,9 @@ bool ConvexSearch::done() const {
 
 bool ConvexSearch::hides(std::span<const Vec3d> corners, const OccluderChoice& choice,
                          const ObjectMask& known, std::uint32_t position) {
-  start(corners, choice, known);
+  if (!start(corners, choice, known)) {
+    return false;
+  }
   const std::uint32_t leaf = scene_.shadow_tree.leafAt(position);
   return hideByAny(leaf, nullptr, leaf, 1, 1) != 0;
 }

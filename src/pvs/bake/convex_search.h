@@ -69,7 +69,8 @@ class ConvexSearch {
   // Occluders, by their boxes, of which one has to meet each line of sight to what is to be hidden. Null: all
   // that may count.
   using Candidates = const BoxLanes*;
-  void start(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known);
+  // False if nothing can be asked: without objects or corners, or with too many corners.
+  bool start(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known);
   // Visits nodes of the shadow tree that are the children of one, and what is below them. depth: of these
   // nodes. False once done() holds.
   bool visit(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth);

@@ -67,8 +67,9 @@ struct Panels {
   std::span<const PanelEdge> edgesOf(const Panel& p) const {
     return std::span(edges).subspan(p.first_edge, p.edge_count);
   }
-  // The panel that is joined at the edge if some panels are left out, `beyond` among them. isOut(panel): one
-  // that is. Only those sheets are joined anew that lose the one that they are joined with.
+  // The panel that is joined at the edge if some panels are left out, those for which isOut(panel) holds. A
+  // sheet whose own partner stays keeps it; others are joined with each other anew, also those that were
+  // joined with none.
   template <typename IsOut>
   std::uint32_t joinedWithout(const PanelEdge& edge, const IsOut& isOut) const;
 };
