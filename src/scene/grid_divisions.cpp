@@ -83,12 +83,14 @@ HWY_INLINE std::uint32_t lastOf(std::uint32_t bits) {
 
 // Rows become columns, of four sets of masks at once: bit i of the mask j is what bit j of the mask i was.
 // Exchanges ever smaller blocks of bits (H. S. Warren, Hacker's Delight, 2002, section 7-3). slabs: beyond so
-// many masks and bits all are 0.
+// many masks and bits all are 0. All of the blocks are exchanged, since on their way bits pass through masks
+// beyond.
 HWY_INLINE void transpose(std::uint32_t (&sets)[kMaxSlabs][4], std::uint32_t slabs) {
   static_assert(kMaxSlabs == 32);
+  const std::uint32_t rows = slabs > 16 ? 32 : 16;
   std::uint32_t mask = slabs > 16 ? 0x0000ffffu : 0x00ff00ffu;
-  for (std::uint32_t size = slabs > 16 ? 16 : 8; size != 0; size /= 2, mask ^= mask << size) {
-    for (std::uint32_t row = 0; row < slabs; row = (row + size + 1) & ~size) {
+  for (std::uint32_t size = rows / 2; size != 0; size /= 2, mask ^= mask << size) {
+    for (std::uint32_t row = 0; row < rows; row = (row + size + 1) & ~size) {
       for (std::size_t set = 0; set < 4; set += hn::Lanes(kSets)) {
         const auto a = hn::Load(kSets, &sets[row][set]), b = hn::Load(kSets, &sets[row + size][set]);
         const auto change =

@@ -110,6 +110,104 @@ TEST(GridDivisions, TheFirstDivisionSavesAsMuchAsAnyCan) {
   EXPECT_GT(saves, 100u);
 }
 
+// Marked cells of a grid with any number of slabs, from its own masks.
+struct MarkedCells {
+  const CellGrid& grid;
+  std::array<std::array<std::uint32_t, 2>, 3> reach{};  // the first and the last slab that is not empty
+
+  // The volume of a box around the marked cells between two slabs along an axis, by the definition above.
+  double volumeOf(int axis, std::uint32_t first, std::uint32_t last, bool whole) {
+    std::array<std::array<std::uint32_t, 2>, 3> of{};
+    of.fill({99, 0});
+    for (std::uint32_t x = 0; x < grid.slabs(0).count; ++x) {
+      for (std::uint32_t y = 0; y < grid.slabs(1).count; ++y) {
+        for (std::uint32_t z = 0; z < grid.slabs(2).count; ++z) {
+          const std::array<std::uint32_t, 3> cell{x, y, z};
+          const std::uint32_t at = cell[static_cast<std::size_t>(axis)];
+          if ((grid.marked(x)[y] >> z & 1) == 0 || at < first || at > last) {
+            continue;
+          }
+          for (std::size_t a = 0; a < 3; ++a) {
+            of[a] = {std::min(of[a][0], cell[a]), std::max(of[a][1], cell[a])};
+          }
+        }
+      }
+    }
+    reach = whole ? of : reach;
+    double volume = 1.0;
+    for (int a = 0; a < 3; ++a) {
+      const Slabs& slabs = grid.slabs(a);
+      const auto [low, high] = of[static_cast<std::size_t>(a)];
+      const auto [all_low, all_high] = reach[static_cast<std::size_t>(a)];
+      const auto middle = [&](std::uint32_t i) {
+        return 0.5 * (double{slabs.low[i]} + double{slabs.high[i]});
+      };
+      const bool ends_low = a == axis && low == first && first > all_low;
+      const bool ends_high = a == axis && high == last && last < all_high;
+      const double begin = ends_low || low == 0 ? slabs.low[low] : middle(low);
+      const double end = ends_high || high + 1 == slabs.count ? slabs.high[high] : middle(high);
+      volume *= end - begin + 1.0 / 16.0;
+    }
+    return volume;
+  }
+};
+
+// So far from the origin, a side has few numbers in single precision, and so any number of slabs.
+TEST(GridDivisions, TheFirstDivisionSavesAsMuchAsAnyCanInGridsOfAnyNumberOfSlabs) {
+  constexpr float kFarAway = 0x1p20f, kStep = 0x1p-3f;
+  std::array<std::size_t, kMaxSlabs + 1> counts{};
+  for (std::uint32_t seed = 0; seed < 600; ++seed) {
+    std::mt19937 random(seed);
+    const std::uint32_t clumps = 2 + seed % 6, triangles = seed % 2 == 0 ? 40 : 200;
+    // Clumps of triangles that are up to a third of the side wide.
+    const auto steps = 9 + static_cast<std::uint32_t>(random() % 23);
+    std::vector<std::array<std::uint32_t, 3>> middles(clumps);
+    for (std::array<std::uint32_t, 3>& middle : middles) {
+      for (std::uint32_t& at : middle) {
+        at = static_cast<std::uint32_t>(random() % steps);
+      }
+    }
+    std::vector<Vec3f> corners;
+    Box box;
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+      for (int k = 0; k < 3; ++k) {
+        Vec3f corner;
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto by = static_cast<std::uint32_t>(random() % (steps / 3));
+          const std::uint32_t at = middles[t % clumps][static_cast<std::size_t>(axis)] + by;
+          corner[axis] = kFarAway + kStep * static_cast<float>(std::min(at, steps));
+        }
+        corners.push_back(corner);
+        box.extend(corner);
+      }
+    }
+    const CellGrid grid(box, corners);
+    MarkedCells cells{grid};
+    DivisionTree tree;
+    findDivisions(grid, {.max_boxes = 2, .max_divided = 1}, tree);
+    const double whole = cells.volumeOf(0, 0, kMaxSlabs, true);
+    EXPECT_NEAR(tree.nodes[0].min_volume[1], whole, 1e-4) << "seed " << seed;
+    double least = 1e30;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [first, last] = cells.reach[static_cast<std::size_t>(axis)];
+      ++counts[grid.slabs(axis).count];
+      for (std::uint32_t plane = first + 1; plane <= last; ++plane) {
+        least = std::min(
+            least, cells.volumeOf(axis, first, plane - 1, false) + cells.volumeOf(axis, plane, last, false));
+      }
+    }
+    ASSERT_EQ(tree.node_count, 3u) << "seed " << seed;
+    const double chosen = tree.nodes[1].min_volume[1] + double{tree.nodes[2].min_volume[1]};
+    EXPECT_GE(chosen, least - 1e-4) << "seed " << seed;
+    EXPECT_LE(chosen, least + 0.11 * whole) << "seed " << seed;
+  }
+  std::size_t between = 0;
+  for (std::uint32_t slabs = 9; slabs < kMaxSlabs; ++slabs) {
+    between += slabs == 16 ? 0 : counts[slabs];
+  }
+  EXPECT_GT(between, 300u);
+}
+
 TEST(GridDivisions, MoreDivisionsAndBoxesNeverTakeMoreVolume) {
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     const Cells cells(seed);

@@ -15,7 +15,7 @@
 #define SIGHTLINE_CONE_SEARCH_ONCE
 namespace sightline::pvs {
 constexpr std::size_t kConeLanes = 16;  // at most
-}
+}  // namespace sightline::pvs
 #endif
 
 HWY_BEFORE_NAMESPACE();
