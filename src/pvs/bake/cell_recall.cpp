@@ -144,10 +144,8 @@ void CellRecall::compareNodes(const Answer* before) {
 std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, const CellBox& region) const {
   // Which objects are left out before a question is asked again depends on the order in which panels are
   // followed, and so on all of the scene.
-  if (scene_.thorough()) {
-    return std::nullopt;
-  }
-  const std::uint32_t same = nodes_before_.empty() ? Recall::kNone : recall_->nodeBefore(number);
+  const bool useful = recall_ != nullptr && (!scene_.thorough() || recall_->sameScene());
+  const std::uint32_t same = !useful || nodes_before_.empty() ? Recall::kNone : recall_->nodeBefore(number);
   if (same == Recall::kNone || nodes_before_[same] == Known::kNothing) {
     return std::nullopt;
   }
