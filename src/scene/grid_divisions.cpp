@@ -339,7 +339,7 @@ class Divider {
   float off_centre_ = 0.0f;
   std::array<std::array<float, kMaxSlabs>, 3> middles_{};        // of slabs, by axis
   std::array<Block, 2 * DivisionTree::kMaxDivided + 1> blocks_;  // by node
-  // Of the block that is being divided, by axis.
+  // These describe the block that is being divided, by axis.
   std::array<Filled, 3> filled_;
   std::array<Ends, 3> ends_;
 };

@@ -66,8 +66,8 @@ class ConvexSearch {
     std::uint32_t occluder = 0;
     std::vector<Shadow> of_corner{};
   };
-  // Occluders, by their boxes, of which one has to meet each line of sight to what is to be hidden. Null: all
-  // that may count.
+  // Occluders by their boxes: whatever hides something below the current node is among them. Null stands for
+  // all that may count.
   using Candidates = const BoxLanes*;
   // False if nothing can be asked: without objects or corners, or with too many corners.
   bool start(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known);
@@ -84,8 +84,8 @@ class ConvexSearch {
                           std::uint32_t left);
   // Sets met_ to the candidates that some lines from the corners to the node may meet.
   void findMet(std::uint32_t node, Candidates candidates);
-  // Of the candidates those that may hide something in the box of a node, kept by its depth; null if they are
-  // too many.
+  // Returns those of the candidates that may hide something in the box of a node. They are kept by its depth.
+  // Returns null if they are too many.
   Candidates candidatesIn(const CellBox& box, Candidates above, std::size_t depth);
   // Whether the occluder is one of the choice, and not known to be superfluous.
   bool counts(std::uint32_t occluder) const;
