@@ -67,7 +67,7 @@ struct Steps {
 // Vertices by their two coordinates that are the same along an axis.
 class AxisLines {
  public:
-  // In the order of the lines, along each of them.
+  // Entries are sorted by line, and along each line.
   struct Entry {
     std::uint64_t line = 0;  // the bits of the two coordinates
     float along = 0.0f;
@@ -98,11 +98,11 @@ class AxisLines {
         });
   }
 
-  // Those strictly between two points of one line, a the lower one.
+  // Returns those strictly between two points of one line, a the lower one.
   std::span<const Entry> between(const Vec3f& a, const Vec3f& b) const {
     return within(entryOf(a, 0xffffffffu), entryOf(b, 0));
   }
-  // Those at a point.
+  // Returns those at a point.
   std::span<const Entry> at(const Vec3f& point) const {
     return within(entryOf(point, 0), entryOf(point, 0xffffffffu));
   }
@@ -116,7 +116,7 @@ class AxisLines {
   std::size_t rowOf(const Entry& entry) const {
     return static_cast<std::size_t>(base::mixBits(entry.line) >> shift_);
   }
-  // Those of the line of `low` that come after it and before `high`, or more than kMostBends of them.
+  // Returns those of the line of `low` that come after it and before `high`, or more than kMostBends of them.
   std::span<const Entry> within(const Entry& low, const Entry& high) const {
     const std::span<const Entry> row = rows_[rowOf(low)];
     const auto begin = std::lower_bound(row.begin(), row.end(), low);

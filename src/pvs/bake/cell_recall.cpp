@@ -27,10 +27,7 @@ bool mayPass(const Vec3d& from, const Box& to, const Box& box) {
 }  // namespace
 
 CellRecall::CellRecall(const BakeScene& scene, const Recall* recall)
-    : scene_(scene),
-      recall_(recall),
-      line_margin_(scene.lineMargin()),
-      occludes_(scene.boxes.objects.size()) {
+    : scene_(scene), recall_(recall), occludes_(scene.boxes.objects.size()) {
   if (recall_ != nullptr) {
     answers_before_.emplace(*recall_);
   }
@@ -87,13 +84,13 @@ void CellRecall::findBehind(std::span<const Vec3d> corners, std::span<const Box>
   const BoxTreeView tree = scene_.boxes.view();
   behind_.reset(static_cast<std::uint32_t>(tree.objects.size()));
   for (const Box& given : boxes) {
-    const Box box = widened(given, line_margin_);
+    const Box box = widened(given, scene_.lineMargin());
     const auto misses = [&](const Box& bounds) {
       return !mayPass(corners.front(), bounds, box) || !mayPass(corners.back(), bounds, box);
     };
     forEachLeaf(tree, misses, [&](const BoxNode& leaf) {
       const auto passes = [&, to = center(leaf.bounds)](const Vec3d& corner) {
-        return !SegmentTest(corner, to, line_margin_).misses(box);
+        return !SegmentTest(corner, to, scene_.lineMargin()).misses(box);
       };
       if (std::all_of(corners.begin(), corners.end(), passes)) {
         const ObjectRun object{leaf.first_object, leaf.first_object + 1};

@@ -69,7 +69,6 @@ class CellRecall {
   const BakeScene& scene_;
   const Recall* recall_;
   std::optional<RecalledAnswers> answers_before_;
-  double line_margin_;
   std::vector<bool> occludes_;  // by place in the box tree: some convex occluder is the object's
   CellAnswers answers_;
   std::uint64_t cell_ = 1;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "src/pvs/bake/segment.h"
-
 namespace sightline::pvs {
 namespace {
 
@@ -163,9 +161,10 @@ std::uint32_t ConvexSearch::hideByAny(std::uint32_t node, Candidates candidates,
   }
   findMet(node, candidates);
   std::sort(met_.begin(), met_.end());  // occluders are numbered from the largest on
+  findLines(node);
   Shadows& shadows = shadows_.back();
   for (const std::uint32_t i : met_) {
-    if (mayHide(i, node) && makeShadows(i, node, shadows)) {
+    if (mayHide(i) && makeShadows(i, node, shadows)) {
       const std::span<const Shadow> of_corners = std::span(shadows.of_corner).first(corners_.size());
       const std::uint32_t hidden = scene_.shadow_tree.hidden(of_corners, first, count) & left;
       report(i, first, hidden);
@@ -203,18 +202,21 @@ bool ConvexSearch::counts(std::uint32_t i) const {
          !known_->contains(scene_.position_of[occluder.object.value]);
 }
 
-bool ConvexSearch::mayHide(std::uint32_t i, std::uint32_t node) {
-  const ConvexOccluder& occluder = scene_.occluders[i];
+void ConvexSearch::findLines(std::uint32_t node) {
   const CellBox box = scene_.shadow_tree.boxOf(node);
-  // From each corner, lines to two opposite corners of the box.
-  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+  lines_.clear();
+  for (std::uint32_t c = 0; c < corners_.size() && !met_.empty(); ++c) {
     for (const std::uint32_t end : {c % 8, 7 - c % 8}) {
-      if (SegmentTest(corners_[c], box.corner(end), scene_.lineMargin()).misses(occluder.bounds)) {
-        return false;
-      }
+      lines_.emplace_back(corners_[c], box.corner(end), scene_.lineMargin());
     }
   }
-  return separated(scene_.occluders, occluder, corners_, scene_.settings.near_distance);
+}
+
+bool ConvexSearch::mayHide(std::uint32_t i) const {
+  const ConvexOccluder& occluder = scene_.occluders[i];
+  const auto misses = [&](const SegmentTest& line) { return line.misses(occluder.bounds); };
+  return std::ranges::none_of(lines_, misses) &&
+         separated(scene_.occluders, occluder, corners_, scene_.settings.near_distance);
 }
 
 bool ConvexSearch::makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows) {

@@ -18,6 +18,7 @@
 
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/object_mask.h"
+#include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
 
@@ -42,7 +43,7 @@ class ConvexSearch {
   };
   // All that is hidden from the region with these corners, at most kMaxCorners of them, without what `known`
   // holds. Occluders of objects that are known to be hidden do not count: something else hides what they
-  // hide. In any order. Valid until the next call.
+  // hide. They come in no particular order, and are valid until the next call.
   std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
                                     const ObjectMask& known);
   // Bounds of the triangles that a point sees: both are below `enough`, or neither is.
@@ -89,8 +90,10 @@ class ConvexSearch {
   Candidates candidatesIn(const CellBox& box, Candidates above, std::size_t depth);
   // Whether the occluder is one of the choice, and not known to be superfluous.
   bool counts(std::uint32_t occluder) const;
-  // Whether some lines from the corners to the node meet the occluder's box, and it is separated from them.
-  bool mayHide(std::uint32_t occluder, std::uint32_t node);
+  // Sets lines_ to lines from each corner to two opposite corners of the node's box.
+  void findLines(std::uint32_t node);
+  // Whether all of these lines meet the occluder's box, and it is separated from the corners.
+  bool mayHide(std::uint32_t occluder) const;
   // Fills the shadows, as long as each hides the node; false if one does not.
   bool makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows);
   // Reports these nodes of a group as hidden.
@@ -111,6 +114,7 @@ class ConvexSearch {
   std::size_t recent_ = 0;
   std::deque<BoxLanes> candidates_;  // by depth: of the nodes there that are open
   std::vector<std::uint32_t> met_, places_;
+  std::vector<SegmentTest> lines_;
   ObjectMask nothing_;
   std::uint64_t shadow_count_ = 0;
 };
