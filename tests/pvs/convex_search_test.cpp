@@ -42,15 +42,22 @@ std::vector<bool> hiddenByAsking(const BakeScene& bake, std::span<const Vec3d> c
         !separated(bake.occluders, occluder, corners, bake.settings.near_distance)) {
       continue;
     }
-    std::vector<Shadow> shadows(corners.size());
-    bool casts = true;
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      casts = casts && makeShadow(bake.occluders, occluder, corners[c], bake.reach, shadows[c]);
+    // Counts, by place, the corners from which the occluder hides it.
+    std::vector<std::uint32_t> hidden_from(hidden.size());
+    for (const Vec3d& corner : corners) {
+      Shadow shadow;
+      Runs runs;
+      if (makeShadow(bake.occluders, occluder, corner, bake.reach, shadow)) {
+        bake.shadow_tree.hiddenBy(shadow, runs);
+      }
+      for (const ObjectRun& run : runs) {
+        for (std::uint32_t at = run.begin; at < run.end; ++at) {
+          ++hidden_from[at];
+        }
+      }
     }
-    for (std::uint32_t at = 0; casts && at < hidden.size(); ++at) {
-      hidden[at] = hidden[at] || std::ranges::all_of(shadows, [&](const Shadow& shadow) {
-                     return bake.shadow_tree.hides(shadow, at);
-                   });
+    for (std::uint32_t at = 0; at < hidden.size(); ++at) {
+      hidden[at] = hidden[at] || hidden_from[at] == corners.size();
     }
   }
   return hidden;

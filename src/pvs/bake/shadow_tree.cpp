@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -312,24 +311,6 @@ ShadowTree::ShadowTree(const BoxTreeView& tree, double reach) {
       leaf_of_[arrays_.nodes[i].objects.begin] = i;
     }
   }
-}
-
-// The operations and their order are those of Traversal::classify(): for a leaf, all that it asks is whether
-// the box is behind every plane.
-bool ShadowTree::hides(const Shadow& shadow, std::uint32_t position) const {
-  const std::uint32_t leaf = leaf_of_[position];
-  const double x = arrays_.cx[leaf] - shadow.eye.x, y = arrays_.cy[leaf] - shadow.eye.y,
-               z = arrays_.cz[leaf] - shadow.eye.z;
-  for (std::uint32_t p = 0; p < shadow.count; ++p) {
-    const double nx = shadow.nx[p], ny = shadow.ny[p], nz = shadow.nz[p];
-    const double middle = nx * x + ny * y + nz * z;
-    const double half =
-        std::abs(nx) * arrays_.hx[leaf] + std::abs(ny) * arrays_.hy[leaf] + std::abs(nz) * arrays_.hz[leaf];
-    if (!(middle - half >= shadow.offset[p])) {
-      return false;
-    }
-  }
-  return shadow.count > 0;
 }
 
 std::uint32_t ShadowTree::hidden(std::span<const Shadow> shadows, std::uint32_t first,

@@ -26,8 +26,6 @@ class ShadowTree {
   // other. An object is hidden if its leaf's closed box is. Boxes that are empty or not finite are never
   // hidden. Every instruction set gives the same runs.
   void hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const;
-  // The same for one object, by its place in BoxTree::objects.
-  bool hides(const Shadow& shadow, std::uint32_t position) const;
 
   struct Node {
     std::uint32_t first_child = 0, child_count = 0;  // indices of nodes
