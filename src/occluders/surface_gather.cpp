@@ -206,21 +206,21 @@ class PartDivider {
   std::vector<std::uint32_t> by_patch_;  // triangles, in the order of patches
 };
 
-// Sets where some triangles lie and which way they face. cornersOf(i): the three vertices of triangle i of
+// Sets where some triangles lie and which way they face. corners_of(i): the three vertices of triangle i of
 // `count`. Part: a SurfaceCluster or a SurfacePatch. Returns the cosine of the greatest angle between normals
 // and that of the supporting plane, rounded down.
 template <typename CornersOf, typename Part>
-double measure(std::span<const Vec3f> vertices, std::uint32_t count, const CornersOf& cornersOf, Part& part,
+double measure(std::span<const Vec3f> vertices, std::uint32_t count, const CornersOf& corners_of, Part& part,
                Box& bounds) {
   Vec3d axis{};
   for (std::uint32_t i = 0; i < count; ++i) {
-    axis += areaNormal(vertices, cornersOf(i));
+    axis += areaNormal(vertices, corners_of(i));
   }
   const double size = length(axis);
   axis = size > 0.0 ? axis / size : Vec3d{0.0, 0.0, 1.0};
   double cosine = 1.0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest, reach = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t* const corners = cornersOf(i);
+    const std::uint32_t* const corners = corners_of(i);
     const Vec3d normal = unitNormal(vertices, corners);
     cosine = normal == Vec3d{} ? cosine : std::min(cosine, dot(normal, axis));
     for (int k = 0; k < 3; ++k) {

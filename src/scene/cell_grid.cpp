@@ -70,7 +70,7 @@ HWY_INLINE void moveToCorners(std::span<const Vec3f> corners, int axis, float lo
   distance.fill(1.0);
   for (const Vec3f& corner : corners) {
     const double place = (double{corner[axis]} - low) * scale;
-    const auto nearest = static_cast<std::uint32_t>(place + 0.5);
+    const auto nearest = static_cast<std::uint32_t>(std::floor(place + 0.5));
     const double from = std::abs(place - nearest);
     if (nearest > 0 && nearest < slabs && from < distance[nearest]) {
       distance[nearest] = from;

@@ -67,16 +67,16 @@ struct Panels {
   std::span<const PanelEdge> edgesOf(const Panel& p) const {
     return std::span(edges).subspan(p.first_edge, p.edge_count);
   }
-  // The panel that is joined at the edge if some panels are left out, those for which isOut(panel) holds. A
+  // The panel that is joined at the edge if some panels are left out, those for which is_out(panel) holds. A
   // sheet whose own partner stays keeps it; others are joined with each other anew, also those that were
   // joined with none.
   template <typename IsOut>
-  std::uint32_t joinedWithout(const PanelEdge& edge, const IsOut& isOut) const;
+  std::uint32_t joinedWithout(const PanelEdge& edge, const IsOut& is_out) const;
 };
 
 // The pairs are those of brackets, all around: each sheet that rises with the next one that falls.
 template <typename IsOut>
-std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& isOut) const {
+std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& is_out) const {
   const std::span<const SheetAround> all = std::span(around).subspan(edge.first_around, edge.around_count);
   if (all.empty()) {
     return kNoPanel;
@@ -86,7 +86,7 @@ std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& isOut) c
   for (std::uint32_t i = edge.self, step = 1; step < all.size(); ++step) {
     i = rises ? (i + 1 == all.size() ? 0 : i + 1) : (i == 0 ? edge.around_count : i) - 1;
     const SheetAround& sheet = all[i];
-    if (isOut(sheet.panel) || (sheet.beyond != kNoPanel && !isOut(sheet.beyond))) {
+    if (is_out(sheet.panel) || (sheet.beyond != kNoPanel && !is_out(sheet.beyond))) {
       continue;
     }
     if (sheet.rises == rises) {
