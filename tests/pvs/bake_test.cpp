@@ -481,6 +481,24 @@ TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {
   }
 }
 
+TEST(Bake, LooksForOccludersAtAnyDistanceWhereObjectsAreMany) {
+  for (const bool many : {false, true}) {
+    const std::uint32_t boxes = many ? static_cast<std::uint32_t>(kManyObjects) : 1000;
+    const Scene scene = makeBoxCity({.buildings = 100, .boxes = boxes});
+    ASSERT_EQ(scene.objects.size() > kManyObjects, many);
+    const Result<Bake> bake = Bake::plan(scene.view(), OccluderSet(), {.max_depth = 1}),
+                       near = Bake::plan(scene.view(), OccluderSet(), {.max_depth = 1, .search_distance = 5});
+    ASSERT_TRUE(bake && near);
+    Box bounds;
+    for (const Object& object : scene.objects) {
+      bounds.extend(object.bounds);
+    }
+    const double diagonal = length(Vec3d(bounds.max) - Vec3d(bounds.min));
+    EXPECT_EQ(bake->firstPart().search_distance >= diagonal, many);
+    EXPECT_EQ(near->firstPart().search_distance, 5.0);
+  }
+}
+
 TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
   BakeSettings settings{.max_depth = 3, .near_distance = 0.1};

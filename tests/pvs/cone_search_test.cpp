@@ -38,6 +38,22 @@ Box boxThrough(const Vec3d& point, Random& random) {
   return box;
 }
 
+std::vector<std::uint32_t> placesMetOf(const BoxLanes& boxes, std::span<const Cone> cones) {
+  std::vector<std::uint32_t> places;
+  placesMet(boxes, cones, places);
+  return places;
+}
+
+// The numbers of what the tree finds; it must not find more than `most`.
+std::vector<std::uint32_t> numbersIn(const ConeTree& tree, std::span<const Cone> cones, std::size_t most) {
+  std::vector<std::uint32_t> found;
+  EXPECT_TRUE(tree.find(cones, most, found));
+  for (std::uint32_t& place : found) {
+    place = tree.boxes().number[place];
+  }
+  return found;
+}
+
 bool has(std::span<const std::uint32_t> found, std::uint32_t number) {
   return std::ranges::find(found, number) != found.end();
 }
@@ -72,10 +88,10 @@ TEST(ConeSearch, LeavesOutNoBoxThatThePointsOfTheConeLieIn) {
     const ConeTree tree(boxes, numbers);
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
-      std::vector<std::uint32_t> places, found;
-      EXPECT_EQ(placesMet(lanes, {&cone, 1}, places).size(), boxes.size()) << "seed " << seed;
-      EXPECT_TRUE(tree.find({&cone, 1}, boxes.size(), found));
-      EXPECT_EQ(found.size(), boxes.size()) << "seed " << seed;
+      EXPECT_EQ(placesMetOf(lanes, {&cone, 1}).size(), boxes.size()) << "seed " << seed;
+      EXPECT_TRUE(std::ranges::is_permutation(numbersIn(tree, {&cone, 1}, boxes.size()), numbers))
+          << "seed " << seed;
+      std::vector<std::uint32_t> found;
       EXPECT_FALSE(tree.find({&cone, 1}, boxes.size() - 1, found));
       hwy::SetSupportedTargetsForTest(0);
     }
@@ -99,10 +115,9 @@ TEST(ConeSearch, LeavesOutMostOfWhatIsBesideTheCone) {
       lanes.add(boxes[i], i);
     }
     lanes.pad();
-    std::vector<std::uint32_t> places, found;
-    const auto met = placesMet(lanes, {&line, 1}, places);
-    EXPECT_TRUE(ConeTree(boxes, numbers).find({&line, 1}, 300, found));
-    EXPECT_TRUE(std::ranges::is_permutation(met, found)) << "seed " << seed;
+    const std::vector<std::uint32_t> met = placesMetOf(lanes, {&line, 1});
+    EXPECT_TRUE(std::ranges::is_permutation(met, numbersIn(ConeTree(boxes, numbers), {&line, 1}, 300)))
+        << "seed " << seed;
     for (std::uint32_t i = 0; i < 300; ++i) {
       // The distance of the box's middle from the line says that it is clearly beside it.
       const Vec3d along = normalized(to - eye), middle = center(boxes[i]) - eye;
@@ -129,12 +144,11 @@ TEST(ConeSearch, FindsWhatAllConesMeet) {
   }
   lanes.pad();
   const ConeTree tree(boxes, numbers);
-  std::vector<std::uint32_t> places, of_one, found;
   const std::array cones{Cone({-20, 0, 0}, {{9, -1, -1}, {10, 1, 1}}, 0.0, 20.0),
                          Cone({-20, 1, 3}, {{9, -1, -1}, {10, 1, 1}}, 0.0, 20.0)};
   std::set<std::uint32_t> both;
   for (const Cone& cone : cones) {
-    const auto met = placesMet(lanes, {&cone, 1}, of_one);
+    const std::vector<std::uint32_t> met = placesMetOf(lanes, {&cone, 1});
     const std::set<std::uint32_t> alone(met.begin(), met.end());
     std::set<std::uint32_t> in_all;
     for (const std::uint32_t i : alone) {
@@ -144,18 +158,17 @@ TEST(ConeSearch, FindsWhatAllConesMeet) {
     }
     both = in_all;
   }
-  const auto met = placesMet(lanes, cones, places);
+  const std::vector<std::uint32_t> met = placesMetOf(lanes, cones), found = numbersIn(tree, cones, 500);
   EXPECT_EQ(std::set<std::uint32_t>(met.begin(), met.end()), both);
   EXPECT_GT(both.size(), 5u);
   EXPECT_LT(both.size(), 400u);
-  EXPECT_TRUE(tree.find(cones, 500, found));
   EXPECT_EQ(std::set<std::uint32_t>(found.begin(), found.end()), both);
 }
 
 TEST(ConeSearch, IsEmptyWithoutBoxes) {
   const Cone cone({0, 0, 0}, {{1, 1, 1}, {2, 2, 2}}, 0.0, 2.0);
-  std::vector<std::uint32_t> places, found{7};
-  EXPECT_TRUE(placesMet(BoxLanes(), {}, places).empty());
+  std::vector<std::uint32_t> found{7};
+  EXPECT_TRUE(placesMetOf(BoxLanes(), {}).empty());
   EXPECT_TRUE(ConeTree().find({&cone, 1}, 0, found));
   EXPECT_TRUE(found.empty());
 }

@@ -120,9 +120,13 @@ Box boundsOf(const SceneView& scene) {
   return bounds;
 }
 
-// An eighth of the scene's diagonal, which spans a few rooms or a few streets.
+// An eighth of the scene's diagonal spans a few rooms or a few streets. Where lines of sight find occluders,
+// those that are far away take no time until something is behind them.
 double firstSearchDistance(const BakeScene& scene) {
-  return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.diagonal;
+  if (scene.settings.search_distance > 0.0) {
+    return scene.settings.search_distance;
+  }
+  return scene.position_of.size() > kManyObjects ? scene.diagonal : 0.125 * scene.diagonal;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,

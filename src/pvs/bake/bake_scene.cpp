@@ -92,6 +92,7 @@ Box frameOf(const CellBox& cell, const BoxTree& tree) {
   return frame;
 }
 
+constexpr std::size_t kDefaultSampleBytes = 256u << 20;
 // Limits of a chosen depth: its minimum, and the maximum number of cells beyond that.
 constexpr std::uint32_t kMinChosenDepth = 6;
 constexpr std::uint64_t kMaxChosenCells = 1u << 15;
@@ -206,6 +207,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   }
   door_occluders_.resize(doors.all.size());
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    position_of_occluder.push_back(position_of[occluders[i].object.value]);
     if (doors.isDoor(occluders[i].object)) {
       door_occluders_[indexOf(occluders[i].object)].push_back(i);
     }
@@ -293,6 +295,7 @@ BoxTree BakeScene::reachOfOccluders(std::uint32_t level) const {
 
 void BakeScene::countOccluders() {
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    position_of_occluder.push_back(position_of[occluders[i].object.value]);
     if (doors.isDoor(occluders[i].object)) {
       continue;
     }
@@ -307,6 +310,10 @@ void BakeScene::countOccluders() {
 
 bool BakeScene::thorough() const {
   return isThorough(settings);
+}
+
+std::size_t BakeScene::sampleBytes() const {
+  return settings.sample_bytes.value_or(position_of.size() > kManyObjects ? 0 : kDefaultSampleBytes);
 }
 
 bool BakeScene::mayDivide(const OctreeCell& cell) const {

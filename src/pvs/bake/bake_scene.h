@@ -20,7 +20,7 @@ namespace sightline::pvs {
 
 // Version of the bake method; increase it whenever the same input would give other cells, or the same
 // question another answer.
-inline constexpr std::uint32_t kBakeVersion = 10;
+inline constexpr std::uint32_t kBakeVersion = 11;
 
 struct BakeScene {
   // settings: must be valid, with at least one box of viewers.
@@ -39,9 +39,10 @@ struct BakeScene {
   double magnitude = 0.0;  // bound of the coordinates of all cells and all objects that may be hidden, metres
   ShadowTree shadow_tree;
   TriangleCounts triangles;
-  std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
-  ConvexOccluders occluders;               // those of doors too, which all functions below leave out
-  Panels panels;                           // while all doors are open; none if only convex occluders hide
+  std::vector<std::uint32_t> position_of;           // index into BoxTree::objects, by object
+  ConvexOccluders occluders;                        // those of doors too, which all functions below leave out
+  std::vector<std::uint32_t> position_of_occluder;  // that of its object, by occluder
+  Panels panels;  // while all doors are open; none if only convex occluders hide
   // By group of doors: the panels while its doors are closed and all others are open. None if only convex
   // occluders hide.
   std::vector<Panels> closed_panels;
@@ -70,6 +71,8 @@ struct BakeScene {
   // Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
   // without what keeps them from it. So it is where narrowing or dividing is asked for.
   bool thorough() const;
+  // BakeSettings::sample_bytes, or what is chosen if it is not given.
+  std::size_t sampleBytes() const;
   // Any cell down to this level may be divided; below it, only cells near occluders.
   std::uint32_t baseDepth() const { return base_depth_; }
   // True if the cell's depth allows dividing it.

@@ -43,7 +43,7 @@ CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
       recall_(scene, recall),
       search_(scene),
-      samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
+      samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.sampleBytes()),
       surfaces_(scene, scene.panels),
       closed_doors_(scene, samples_) {}
 
@@ -298,7 +298,7 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
 }
 
 void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
-  if (scene_.settings.sample_bytes > 0) {
+  if (scene_.sampleBytes() > 0) {
     hideBySamples(corners);
     return;
   }
@@ -334,7 +334,7 @@ void CellBaker::hideBySamples(std::span<const Vec3d> corners) {
   }
   for (const std::uint32_t i : chosenOccluders()) {
     const ConvexOccluder& occluder = scene_.occluders[i];
-    if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
+    if (!hidden_.contains(scene_.position_of_occluder[i]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
         samples_.hiddenFromAll(i, samples, common_)) {
       recordConvex(i, common_);
@@ -375,7 +375,7 @@ std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
   Sample& sample = samples_.at(eye);
   for (const std::uint32_t i : chosenOccluders()) {
     const ConvexOccluder& occluder = scene_.occluders[i];
-    if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
+    if (!hidden_.contains(scene_.position_of_occluder[i]) &&
         separated(scene_.occluders, occluder, std::span(&eye, 1), scene_.settings.near_distance)) {
       hidden_.add(samples_.hidden(sample, i));
     }
@@ -397,7 +397,7 @@ bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
     }
   }
   ++asked_;
-  if (scene_.settings.sample_bytes > 0) {
+  if (scene_.sampleBytes() > 0) {
     answer.least = answer.most = trianglesSeenFrom(eye);
   } else {
     const ConvexSearch::Bounds seen = search_.trianglesSeenFrom(eye, choice_, triangles);

@@ -148,10 +148,9 @@ void BoxLanes::pad() {
   }
 }
 
-std::span<const std::uint32_t> placesMet(const BoxLanes& boxes, std::span<const Cone> cones,
-                                         std::vector<std::uint32_t>& places) {
+void placesMet(const BoxLanes& boxes, std::span<const Cone> cones, std::vector<std::uint32_t>& places) {
   places.resize(boxes.size() + kConeLanes);
-  return std::span(places).first(HWY_DYNAMIC_DISPATCH(findMet)(boxes, cones, 0, boxes.size(), places.data()));
+  places.resize(HWY_DYNAMIC_DISPATCH(findMet)(boxes, cones, 0, boxes.size(), places.data()));
 }
 
 ConeTree::ConeTree(std::span<const Box> boxes, std::span<const std::uint32_t> numbers) {
@@ -187,7 +186,7 @@ bool ConeTree::findBelow(std::span<const Cone> cones, std::uint32_t number, std:
     for (const std::uint32_t place : std::span(places).first(count)) {
       const std::uint32_t child = children_.number[place];
       if ((child & kNodeBit) == 0) {
-        found.push_back(child);
+        found.push_back(place);
       } else if (!findBelow(cones, child & ~kNodeBit, most, found)) {
         return false;
       }

@@ -34,6 +34,9 @@ struct BoxLanes {
   std::vector<std::uint32_t> number;
 
   std::size_t size() const { return number.size(); }
+  Box boxAt(std::size_t i) const {
+    return {{min[0][i], min[1][i], min[2][i]}, {max[0][i], max[1][i], max[2][i]}};
+  }
   void clear();
   void add(const Box& box, std::uint32_t its_number);
   // Adds boxes of others.
@@ -42,10 +45,9 @@ struct BoxLanes {
   void pad();
 };
 
-// The places of the boxes that all of the cones meet, and of some that they almost do, ascending; the same on
-// every instruction set. Kept in `places`.
-std::span<const std::uint32_t> placesMet(const BoxLanes& boxes, std::span<const Cone> cones,
-                                         std::vector<std::uint32_t>& places);
+// Sets `places` to those of the boxes that all of the cones meet, and of some that they almost do, ascending;
+// the same on every instruction set.
+void placesMet(const BoxLanes& boxes, std::span<const Cone> cones, std::vector<std::uint32_t>& places);
 
 // A tree of boxes. Immutable.
 class ConeTree {
@@ -54,9 +56,12 @@ class ConeTree {
   // numbers: by box.
   ConeTree(std::span<const Box> boxes, std::span<const std::uint32_t> numbers);
 
-  // Sets `found` to the numbers of the boxes that all cones meet, and of some that they almost do. False,
-  // with nothing of use in `found`, if they are more than `most`.
+  // Sets `found` to the places in boxes() of those that all cones meet, and of some that they almost do.
+  // False, with nothing of use in `found`, if they are more than `most`.
   bool find(std::span<const Cone> cones, std::size_t most, std::vector<std::uint32_t>& found) const;
+
+  // All boxes, with their numbers, and the boxes of nodes among them.
+  const BoxLanes& boxes() const { return children_; }
 
  private:
   struct Node {

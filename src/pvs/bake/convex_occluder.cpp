@@ -242,15 +242,15 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
     return false;
   }
   const Vec3d gaps = gapsBetween(occluder.bounds, corners);
-  double gap = -INFINITY;  // of the best separating plane
+  double gap = occluder.body ? maxComponent(gaps) * kRoundDown : -INFINITY;  // of the best separating plane
+  if (gap - occluder.margin > std::max(near_distance, 0.0)) {
+    return true;
+  }
   for (const DrawnFace& face : all.facesOf(occluder)) {
     gap = std::max(gap, minHeight(face.plane, occluder.size, corners));
     if (occluder.double_sided) {
       gap = std::max(gap, minHeight(face.plane.flipped(), occluder.size, corners));
     }
-  }
-  if (occluder.body) {
-    gap = std::max(gap, maxComponent(gaps) * kRoundDown);
   }
   // The margin exceeds the distance of the triangles from the planes and from the bounds.
   const double distance = std::max(gap, length(max(gaps, Vec3d())) * kRoundDown);

@@ -9,7 +9,22 @@ namespace {
 // If no more occluders than this are in the cone to a node, they are listed for what is below it.
 constexpr std::size_t kMostCandidates = 8192;
 // A list of no more than this is used for all that is below, without leaving out more of it.
-constexpr std::size_t kFewCandidates = 32;
+constexpr std::size_t kFewCandidates = 8;
+// Which occluders of a list of no more than this are separated from the region is found out at once.
+constexpr std::size_t kFewToSeparate = 128;
+
+// By point: the corner of a box on the same side of the middle of all of them.
+void findSides(std::span<const Vec3d> corners, std::vector<std::uint32_t>& sides) {
+  const Vec3d middle = pvs::boundsOf(corners).centre();
+  sides.clear();
+  for (const Vec3d& corner : corners) {
+    std::uint32_t side = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      side |= corner[axis] > middle[axis] ? 1u << axis : 0u;
+    }
+    sides.push_back(side);
+  }
+}
 
 }  // namespace
 
@@ -17,6 +32,7 @@ ConvexSearch::ConvexSearch(const BakeScene& scene) : scene_(scene) {
   for (Shadows& shadows : shadows_) {
     shadows.of_corner.resize(kMaxCorners);
   }
+  separated_.resize(scene.occluders.size());
   nothing_.reset(static_cast<std::uint32_t>(scene.boxes.objects.size()));
 }
 
@@ -29,7 +45,12 @@ bool ConvexSearch::start(std::span<const Vec3d> corners, const OccluderChoice& c
   hidden_triangles_ = seen_triangles_ = 0;
   found_.clear();
   recent_ = 0;
-  return !corners.empty() && corners.size() <= kMaxCorners && !scene_.shadow_tree.nodes().empty();
+  ++question_;
+  if (corners.empty() || corners.size() > kMaxCorners || scene_.shadow_tree.nodes().empty()) {
+    return false;
+  }
+  findSides(corners, side_of_);
+  return true;
 }
 
 std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Vec3d> corners,
@@ -102,7 +123,7 @@ bool ConvexSearch::visitGroup(std::uint32_t first, std::uint32_t count, Candidat
 }
 
 bool ConvexSearch::visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth) {
-  candidates = candidatesIn(scene_.shadow_tree.boxOf(node), candidates, depth);
+  candidates = candidatesBelow(node, candidates, depth);
   const ShadowTree::Node& inner = scene_.shadow_tree.nodes()[node];
   if (candidates != nullptr && candidates->size() == 0) {
     seen_triangles_ += scene_.triangles.of({&inner.objects, 1});
@@ -111,7 +132,17 @@ bool ConvexSearch::visitBelow(std::uint32_t node, Candidates candidates, std::si
   return visit(inner.first_child, inner.child_count, candidates, depth + 1);
 }
 
-ConvexSearch::Candidates ConvexSearch::candidatesIn(const CellBox& box, Candidates above, std::size_t depth) {
+template <typename To>
+std::array<Cone, 4> ConvexSearch::conesTo(const To& to) const {
+  const auto cone = [&](std::size_t i) {
+    const std::size_t corner = std::min(i, corners_.size() - 1);
+    return scene_.coneTo(to(side_of_[corner]), corners_[corner]);
+  };
+  return {cone(0), cone(1), cone(2), cone(3)};
+}
+
+ConvexSearch::Candidates ConvexSearch::candidatesBelow(std::uint32_t node, Candidates above,
+                                                       std::size_t depth) {
   if (above != nullptr && above->size() <= kFewCandidates) {
     return above;
   }
@@ -119,20 +150,23 @@ ConvexSearch::Candidates ConvexSearch::candidatesIn(const CellBox& box, Candidat
     candidates_.emplace_back();
   }
   BoxLanes& below = candidates_[depth];
-  const auto cone = [&](std::size_t corner) { return scene_.coneTo(box, corners_[corner]); };
-  const std::size_t last = corners_.size() - 1;
-  const std::array cones{cone(0), cone(std::min<std::size_t>(1, last)), cone(last), cone(last / 2)};
+  const auto cones = conesTo([&](std::uint32_t i) { return scene_.shadow_tree.cornersBelow(node, i); });
   below.clear();
   if (above != nullptr) {
-    below.add(*above, placesMet(*above, cones, places_));
-  } else if (scene_.occludersInCones(choice_->level).find(cones, kMostCandidates, places_)) {
-    for (const std::uint32_t i : places_) {
-      if (counts(i)) {
-        below.add(scene_.occluders[i].bounds, i);
-      }
+    placesMet(*above, cones, places_);
+    if (above->size() <= kFewToSeparate) {
+      std::erase_if(places_, [&](std::uint32_t place) { return !isSeparated(above->number[place]); });
     }
+    below.add(*above, places_);
   } else {
-    return nullptr;
+    const ConeTree& all = scene_.occludersInCones(choice_->level);
+    if (!all.find(cones, kMostCandidates, places_)) {
+      return nullptr;
+    }
+    std::erase_if(places_, [&](std::uint32_t place) {
+      return !counts(all.boxes().number[place], all.boxes().boxAt(place));
+    });
+    below.add(all.boxes(), places_);
   }
   below.pad();
   return &below;
@@ -164,7 +198,7 @@ std::uint32_t ConvexSearch::hideByAny(std::uint32_t node, Candidates candidates,
   findLines(node);
   Shadows& shadows = shadows_.back();
   for (const std::uint32_t i : met_) {
-    if (mayHide(i) && makeShadows(i, node, shadows)) {
+    if (meetsLines(i) && isSeparated(i) && makeShadows(i, node, shadows)) {
       const std::span<const Shadow> of_corners = std::span(shadows.of_corner).first(corners_.size());
       const std::uint32_t hidden = scene_.shadow_tree.hidden(of_corners, first, count) & left;
       report(i, first, hidden);
@@ -178,45 +212,51 @@ std::uint32_t ConvexSearch::hideByAny(std::uint32_t node, Candidates candidates,
 
 void ConvexSearch::findMet(std::uint32_t node, Candidates candidates) {
   const CellBox box = scene_.shadow_tree.boxOf(node);
-  const auto line = [&](std::size_t corner, const Vec3d& to) {
-    return scene_.coneTo({to, to}, corners_[corner]);
-  };
-  const std::size_t last = corners_.size() - 1;
-  const std::array lines{line(0, box.centre()), line(std::min<std::size_t>(1, last), box.centre()),
-                         line(last, box.corner(0)), line(last / 2, box.corner(7))};
-  if (candidates == nullptr) {
-    scene_.occludersInCones(choice_->level).find(lines, scene_.occluders.size(), met_);
-    std::erase_if(met_, [this](std::uint32_t i) { return !counts(i); });
-    return;
+  const auto lines = conesTo([&](std::uint32_t i) { return CellBox{box.corner(i), box.corner(i)}; });
+  const ConeTree& all = scene_.occludersInCones(choice_->level);
+  const BoxLanes& boxes = candidates != nullptr ? *candidates : all.boxes();
+  if (candidates != nullptr) {
+    placesMet(boxes, lines, places_);
+  } else {
+    all.find(lines, scene_.occluders.size(), places_);
   }
   met_.clear();
-  for (const std::uint32_t place : placesMet(*candidates, lines, places_)) {
-    met_.push_back(candidates->number[place]);
+  for (const std::uint32_t place : places_) {
+    const std::uint32_t occluder = boxes.number[place];
+    if (candidates != nullptr || counts(occluder, boxes.boxAt(place))) {
+      met_.push_back(occluder);
+    }
   }
 }
 
-bool ConvexSearch::counts(std::uint32_t i) const {
-  const ConvexOccluder& occluder = scene_.occluders[i];
-  return intersects(choice_->search, occluder.bounds) &&
-         !(choice_->known && intersects(*choice_->known, occluder.bounds)) &&
-         !known_->contains(scene_.position_of[occluder.object.value]);
+bool ConvexSearch::counts(std::uint32_t occluder, const Box& bounds) const {
+  return intersects(choice_->search, bounds) && !(choice_->known && intersects(*choice_->known, bounds)) &&
+         !known_->contains(scene_.position_of_occluder[occluder]);
+}
+
+bool ConvexSearch::isSeparated(std::uint32_t occluder) {
+  std::uint64_t& known = separated_[occluder];
+  if (known >> 1 != question_) {
+    const bool yes =
+        separated(scene_.occluders, scene_.occluders[occluder], corners_, scene_.settings.near_distance);
+    known = question_ << 1 | (yes ? 1u : 0u);
+  }
+  return (known & 1u) != 0;
 }
 
 void ConvexSearch::findLines(std::uint32_t node) {
   const CellBox box = scene_.shadow_tree.boxOf(node);
   lines_.clear();
   for (std::uint32_t c = 0; c < corners_.size() && !met_.empty(); ++c) {
-    for (const std::uint32_t end : {c % 8, 7 - c % 8}) {
+    for (const std::uint32_t end : {side_of_[c], 7 - side_of_[c]}) {
       lines_.emplace_back(corners_[c], box.corner(end), scene_.lineMargin());
     }
   }
 }
 
-bool ConvexSearch::mayHide(std::uint32_t i) const {
-  const ConvexOccluder& occluder = scene_.occluders[i];
-  const auto misses = [&](const SegmentTest& line) { return line.misses(occluder.bounds); };
-  return std::ranges::none_of(lines_, misses) &&
-         separated(scene_.occluders, occluder, corners_, scene_.settings.near_distance);
+bool ConvexSearch::meetsLines(std::uint32_t occluder) const {
+  const Box& bounds = scene_.occluders[occluder].bounds;
+  return std::ranges::none_of(lines_, [&](const SegmentTest& line) { return line.misses(bounds); });
 }
 
 bool ConvexSearch::makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows) {

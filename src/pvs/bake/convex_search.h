@@ -5,8 +5,11 @@
 // the time follows what is seen, not how many occluders there are.
 //
 // The box tree is searched from the root down. A node that an occluder hides ends its branch. To what is
-// below others, occluders are passed on that lie in the cones from some corners of the region to the node.
-// What one occluder hides is often next to what it hid before, so the last ones are asked first.
+// below others, occluders are passed on that lie in the cones from some corners of the region to where such
+// lines end. What one occluder hides is often next to what it hid before, so the last ones are asked first.
+//
+// A line from a corner of the region ends in the corner of the box on the same side. Such lines are the edges
+// of the hull of both, and few occluders meet several of them.
 
 #include <array>
 #include <cstddef>
@@ -85,15 +88,20 @@ class ConvexSearch {
                           std::uint32_t left);
   // Sets met_ to the candidates that some lines from the corners to the node may meet.
   void findMet(std::uint32_t node, Candidates candidates);
-  // Returns those of the candidates that may hide something in the box of a node. They are kept by its depth.
-  // Returns null if they are too many.
-  Candidates candidatesIn(const CellBox& box, Candidates above, std::size_t depth);
+  // Returns those of the candidates that may hide something below a node. They are kept by its depth. Returns
+  // null if they are too many.
+  Candidates candidatesBelow(std::uint32_t node, Candidates above, std::size_t depth);
+  // Cones from some corners to boxes: to(i) is where lines end that begin on the same side as corner i of a
+  // box.
+  template <typename To>
+  std::array<Cone, 4> conesTo(const To& to) const;
   // Whether the occluder is one of the choice, and not known to be superfluous.
-  bool counts(std::uint32_t occluder) const;
+  bool counts(std::uint32_t occluder, const Box& bounds) const;
+  bool isSeparated(std::uint32_t occluder);  // from the corners
   // Sets lines_ to lines from each corner to two opposite corners of the node's box.
   void findLines(std::uint32_t node);
-  // Whether all of these lines meet the occluder's box, and it is separated from the corners.
-  bool mayHide(std::uint32_t occluder) const;
+  // Whether all of these lines meet the occluder's box.
+  bool meetsLines(std::uint32_t occluder) const;
   // Fills the shadows, as long as each hides the node; false if one does not.
   bool makeShadows(std::uint32_t occluder, std::uint32_t node, Shadows& shadows);
   // Reports these nodes of a group as hidden.
@@ -102,7 +110,9 @@ class ConvexSearch {
 
   const BakeScene& scene_;
   // The current question.
+  std::uint64_t question_ = 0;  // its number
   std::span<const Vec3d> corners_;
+  std::vector<std::uint32_t> side_of_;  // by corner: the corner of a box on the same side of the region
   const OccluderChoice* choice_ = nullptr;
   const ObjectMask* known_ = nullptr;
   std::optional<double> enough_;  // triangles; none: all that is hidden is to be found
@@ -115,6 +125,7 @@ class ConvexSearch {
   std::deque<BoxLanes> candidates_;  // by depth: of the nodes there that are open
   std::vector<std::uint32_t> met_, places_;
   std::vector<SegmentTest> lines_;
+  std::vector<std::uint64_t> separated_;  // by occluder: twice the last question about it, plus the answer
   ObjectMask nothing_;
   std::uint64_t shadow_count_ = 0;
 };

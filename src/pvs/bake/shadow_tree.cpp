@@ -176,6 +176,9 @@ constexpr std::size_t kPadding = 8;  // lanes
 // seen ever contradicts the test of the leaf.
 constexpr double kNodeMargin = 0x1p-46;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr CellBox kEverywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+
 // True for nodes that are malformed or have a malformed node below them.
 std::vector<bool> brokenNodes(const BoxTreeView& tree) {
   std::vector<bool> broken(tree.nodes.size());
@@ -239,7 +242,6 @@ struct NodeBox {
 
 // Boxes by node. A malformed node, or one with a malformed node below it, counts as an unbounded box.
 std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree, double reach) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Vec3d infinite(kInfinity, kInfinity, kInfinity);
   const std::vector<bool> broken = brokenNodes(tree);
   std::vector<NodeBox> boxes(tree.nodes.size(), NodeBox{{}, infinite, infinite});
@@ -305,10 +307,30 @@ ShadowTree::ShadowTree(const BoxTreeView& tree, double reach) {
   fill(arrays_.rx, &NodeBox::room, 0);
   fill(arrays_.ry, &NodeBox::room, 1);
   fill(arrays_.rz, &NodeBox::room, 2);
+  findCorners(tree, from);
   leaf_of_.resize(tree.objects.size());
   for (std::uint32_t i = 0; i < from.size(); ++i) {
     if (tree.leaf(from[i])) {
       leaf_of_[arrays_.nodes[i].objects.begin] = i;
+    }
+  }
+}
+
+void ShadowTree::findCorners(const BoxTreeView& tree, std::span<const std::uint32_t> from) {
+  lowest_.resize(from.size(), kEverywhere);
+  highest_.resize(from.size(), kEverywhere);
+  for (std::size_t i = from.size(); i-- > 0;) {
+    if (!mayBeHidden(static_cast<std::uint32_t>(i))) {
+      continue;
+    }
+    const Node& node = arrays_.nodes[i];
+    const Vec3d low(tree.nodes[from[i]].bounds.min), high(tree.nodes[from[i]].bounds.max);
+    const bool leaf = node.child_count == 0;
+    lowest_[i] = {low, leaf ? low : lowest_[node.first_child].max};
+    highest_[i] = {leaf ? high : highest_[node.first_child].min, high};
+    for (std::uint32_t child = node.first_child; child < node.first_child + node.child_count; ++child) {
+      lowest_[i].max = max(lowest_[i].max, lowest_[child].max);
+      highest_[i].min = min(highest_[i].min, highest_[child].min);
     }
   }
 }

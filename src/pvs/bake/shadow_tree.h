@@ -44,6 +44,17 @@ class ShadowTree {
     const Vec3d half{arrays_.hx[node], arrays_.hy[node], arrays_.hz[node]};
     return {centreOf(node) - half, centreOf(node) + half};
   }
+  // Bounds of corner i of the boxes of all leaves below a node; bits of i as in CellBox::corner.
+  CellBox cornersBelow(std::uint32_t node, std::uint32_t i) const {
+    const CellBox &low = lowest_[node], &high = highest_[node];
+    CellBox bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+      const CellBox& side = ((i >> axis) & 1u) != 0 ? high : low;
+      bounds.min[axis] = side.min[axis];
+      bounds.max[axis] = side.max[axis];
+    }
+    return bounds;
+  }
   // The leaf of an object, by its place in BoxTree::objects.
   std::uint32_t leafAt(std::uint32_t position) const { return leaf_of_[position]; }
 
@@ -60,7 +71,12 @@ class ShadowTree {
   };
 
  private:
+  // from: by node, its node in the tree.
+  void findCorners(const BoxTreeView& tree, std::span<const std::uint32_t> from);
+
   Arrays arrays_;
+  // By node: bounds of the least and of the greatest points of the boxes of the leaves below.
+  std::vector<CellBox> lowest_, highest_;
   std::vector<std::uint32_t> leaf_of_;  // by place in BoxTree::objects: its node
 };
 

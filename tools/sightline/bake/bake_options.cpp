@@ -13,8 +13,6 @@
 namespace sightline::tool {
 namespace {
 
-// With more of them, a bake that keeps no samples is faster.
-constexpr std::size_t kManyObjects = 20'000;
 constexpr double kMax = 1e6;       // largest distance in metres, largest factor
 constexpr double kMinNear = 1e-6;  // metres
 constexpr std::uint32_t kMaxMib = 1u << 20;
@@ -87,8 +85,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "(several: a,b,c); of a+b, such as two that lead into one room, is stored what they hide together")
       ->check(isNotEmpty());
   addViewerOptions(command, options.viewers);
-  addDecimalOption(command, "--search-distance", settings.search_distance, 0.0, kMax,
-                   "occluders are looked for within so many metres at first; 0: chosen");
+  addDecimalOption(
+      command, "--search-distance", settings.search_distance, 0.0, kMax,
+      fmt::format("occluders are looked for within so many metres at first; 0: an eighth of the scene's "
+                  "diagonal, or all of it with more than {} objects",
+                  kManyObjects));
   addDecimalOption(
       command, "--occluder-size", settings.occluder_size, 0.0, kMax,
       "an occluder is of use to a cell when its area is so many times that of the cell's smallest face, or "
@@ -102,9 +103,12 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   command
       .add_option(
           "--sample-memory", options.sample_mib,
-          "MiB for what each occluder hides from each corner of a cell, kept for its neighbours as in the "
-          "paper, of each process; 0: none, which takes less memory, and less time where objects are "
-          "many (default: 1024; 0 with more than 20,000 objects)")
+          fmt::format(
+              "MiB for what each occluder hides from each corner of a cell, kept for its neighbours as in "
+              "the paper, of each process; 0: none, which takes less memory, and less time where objects are "
+              "many "
+              "(default: 1024; 0 with more than {} objects)",
+              kManyObjects))
       ->check(CLI::Range(0u, kMaxMib));
   command
       .add_option("--databases", options.databases, "occluder databases to store as well (several: a,b,c)")

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ enum class BakeOcclusion : std::uint8_t {
   kConvex,  // each convex occluder by itself, as in the paper
   kFused,   // and surfaces of any number of triangles together
 };
+
+// Scenes of more objects are searched by lines of sight, and occluders are looked for at any distance, unless
+// the settings say otherwise.
+inline constexpr std::size_t kManyObjects = 20'000;
 
 struct BakeSettings {
   // Fused sets are smaller, and take some hundred times as long to bake.
@@ -55,8 +60,8 @@ struct BakeSettings {
   // lead into one room; and what all of them hide together. A group of one is a door by itself. Surfaces of
   // doors take memory for each group (BakeOcclusion::kFused).
   std::vector<std::vector<ObjectId>> doors{};
-  // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
-  // doubled where that helps.
+  // Occluders are searched within this distance of a viewpoint at first, in metres. It is doubled where that
+  // helps. 0: an eighth of the scene's diagonal, or all of it with more than kManyObjects objects.
   double search_distance = 0.0;
   // An occluder is useful to a cell if its area is at least this many times that of the cell's smallest face,
   // or its volume at least this many times the cell's.
@@ -79,8 +84,9 @@ struct BakeSettings {
   double box_margin = 0.0;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again. 0: none
   // are kept, and what may hide a box is found by lines of sight, which takes little memory, and less time
-  // where objects are many, tens of thousands, or cells small. The sets are the same.
-  std::size_t sample_bytes = 256u << 20;
+  // where objects are many or cells small. None given: 256 MiB, or 0 with more than kManyObjects objects. The
+  // sets are the same.
+  std::optional<std::size_t> sample_bytes{};
   bool witnesses = false;  // records what hides objects; see Bake::witnesses. The sets stay the same
   bool answers = false;    // records what was asked; see Bake::answers. The sets stay the same
 };
