@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "sightline/geometry/tolerance.h"
 #include "src/pvs/bake/box_search.h"
@@ -25,7 +26,7 @@ constexpr double kWidening = 0x1p-18;
 // Places of ends of lines in a box, in fractions of it. They are no round numbers, because those of edges
 // are.
 constexpr Vec3d kStart{0.5127, 0.4861, 0.5073};
-constexpr std::array<Vec3d, 9> kEnds{
+constexpr std::array<Vec3d, FusedOcclusion::kEndCount> kEnds{
     Vec3d{0.4893, 0.5131, 0.4937}, Vec3d{0.0213, 0.9791, 0.0237}, Vec3d{0.9763, 0.9817, 0.0251},
     Vec3d{0.0229, 0.9773, 0.9759}, Vec3d{0.9781, 0.9807, 0.9743}, Vec3d{0.0241, 0.0197, 0.0219},
     Vec3d{0.9777, 0.0221, 0.0203}, Vec3d{0.0217, 0.0233, 0.9769}, Vec3d{0.9787, 0.0239, 0.9771}};
@@ -123,6 +124,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
     shaft_number_ = 1;
   }
   spoilers_.clear();
+  traced_count_ = 0;
   Answer answer = askWithout();
   if (answer != Answer::kUndecided || spoilers_.empty() || most_repeats_ == 0) {
     return answer;
@@ -140,13 +142,26 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   return answer == Answer::kHidden ? answer : Answer::kUndecided;
 }
 
-// Whether one of the lines of sight that askWithout() may try is clear.
+// Whether one of the lines of sight that askWithout() may try is clear. Those that it has tried are not.
 bool FusedOcclusion::seesAnyEnd() {
   const Vec3d from = startOf(region_);
-  return std::any_of(kEnds.begin(), kEnds.end(), [&](const Vec3d& end) {
+  return std::any_of(kEnds.begin() + traced_count_, kEnds.end(), [&](const Vec3d& end) {
     findCrossings(from, pointIn(target_, end), true);
     return clear();
   });
+}
+
+// Sets crossings_ to those of the line of sight to an end. A repeat leaves out more than the questions before
+// it, so it need not follow again the lines that they followed.
+void FusedOcclusion::findCrossingsTo(std::uint32_t end) {
+  if (end == traced_count_) {
+    findCrossings(startOf(region_), pointIn(target_, kEnds[end]), false);
+    traced_[traced_count_++] = crossings_;
+    return;
+  }
+  crossings_.clear();
+  std::copy_if(traced_[end].begin(), traced_[end].end(), std::back_inserter(crossings_),
+               [this](const Crossing& crossing) { return !isLeftOut(crossing.panel); });
 }
 
 void FusedOcclusion::leaveOut(std::uint32_t object) {
@@ -178,14 +193,12 @@ void FusedOcclusion::addSpoiler(std::uint32_t panel) {
 
 FusedOcclusion::Answer FusedOcclusion::askWithout() {
   startQuestion();
-  const Vec3d from = startOf(region_);
-  for (const Vec3d& end : kEnds) {
-    const Vec3d to = pointIn(target_, end);
-    findCrossings(from, to, false);
+  for (std::uint32_t end = 0; end < kEnds.size(); ++end) {
+    findCrossingsTo(end);
     if (clear()) {
       return Answer::kClear;
     }
-    if (hiddenBehind(from, to)) {
+    if (hiddenBehind(startOf(region_), pointIn(target_, kEnds[end]))) {
       return Answer::kHidden;
     }
     // Another end of the line helps only if this one is all that is wrong.

@@ -3,6 +3,7 @@
 // What surfaces of any number of triangles hide from a whole region together. docs/conservative.md, "Sets
 // from regions", says why it is safe.
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ class FusedOcclusion {
   // anything, mostly the floor below the region and what is joined with it. The panels must outlive this.
   FusedOcclusion(const Panels& panels, double magnitude, std::uint32_t most_repeats = kMostRepeats);
   static constexpr std::uint32_t kMostRepeats = 4;
+  static constexpr std::uint32_t kEndCount = 9;  // of lines of sight that ask() tries at most
 
   // near_distance: what is closer to the region, in metres, hides nothing.
   Answer ask(const CellBox& region, const FusedTarget& target, double near_distance);
@@ -78,6 +80,7 @@ class FusedOcclusion {
   }
   // Notes that its object keeps a surface from hiding anything.
   void addSpoiler(std::uint32_t panel);
+  void findCrossingsTo(std::uint32_t end);
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
   void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
@@ -106,6 +109,9 @@ class FusedOcclusion {
   Shaft shaft_;
   Proof proof_;
   std::vector<Crossing> crossings_;
+  // By end: the crossings of a line of sight, with all that are not left out when it is first followed.
+  std::array<std::vector<Crossing>, kEndCount> traced_;
+  std::uint32_t traced_count_ = 0;
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component
   std::vector<std::uint32_t> ahead_;    // members whose edges have not been looked at; a heap
