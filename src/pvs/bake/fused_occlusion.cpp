@@ -19,6 +19,7 @@ namespace {
 // A component of more panels is taken for open, which bounds the time. A box of several objects is rarely
 // hidden as a whole.
 constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
+constexpr std::size_t kMostBlockers = 8;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
@@ -101,8 +102,7 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude, std::uint
 bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object) {
   leaveOut(object);
   startQuestion();
-  findCrossings(from, to, true);
-  return clear();
+  return isFree(from, to);
 }
 
 Vec3d FusedOcclusion::startOf(const CellBox& region) {
@@ -145,17 +145,15 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
 // Whether one of the lines of sight that askWithout() may try is clear. Those that it has tried are not.
 bool FusedOcclusion::seesAnyEnd() {
   const Vec3d from = startOf(region_);
-  return std::any_of(kEnds.begin() + traced_count_, kEnds.end(), [&](const Vec3d& end) {
-    findCrossings(from, pointIn(target_, end), true);
-    return clear();
-  });
+  return std::any_of(kEnds.begin() + traced_count_, kEnds.end(),
+                     [&](const Vec3d& end) { return isFree(from, pointIn(target_, end)); });
 }
 
 // Sets crossings_ to those of the line of sight to an end. A repeat leaves out more than the questions before
 // it, so it need not follow again the lines that they followed.
 void FusedOcclusion::findCrossingsTo(std::uint32_t end) {
   if (end == traced_count_) {
-    findCrossings(startOf(region_), pointIn(target_, kEnds[end]), false);
+    findCrossings(startOf(region_), pointIn(target_, kEnds[end]));
     traced_[traced_count_++] = crossings_;
     return;
   }
@@ -239,17 +237,38 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& from, const Vec3d& to) {
   return true;
 }
 
-// Sets crossings_ to those of a line of sight, or to the first ones up to one that shows that it is not
-// clear.
-void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked) {
+// Sets crossings_ to all those of a line of sight.
+void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to) {
   crossings_.clear();
-  const BoxTree& tree = panels_.tree;
   const SegmentTest segment(from, to, error_);
-  anyLeaf(
-      tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
+  forEachLeaf(
+      panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
+      [&](const BoxNode& leaf) { crossPanel(panelOf(leaf), from, to); });
+}
+
+// Whether no panel blocks the line of sight. What blocked other lines is asked first: it often blocks this one.
+bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to) {
+  const auto blocks = [&](std::uint32_t panel) {
+    crossings_.clear();
+    crossPanel(panel, from, to);
+    return !clear();
+  };
+  if (const auto known = std::find_if(blockers_.begin(), blockers_.end(), blocks); known != blockers_.end()) {
+    std::rotate(blockers_.begin(), known, known + 1);
+    return false;
+  }
+  const SegmentTest segment(from, to, error_);
+  return !anyLeaf(
+      panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
       [&](const BoxNode& leaf) {
-        crossPanel(tree.objects[leaf.first_object].value, from, to);
-        return until_blocked && !crossings_.empty() && crossings_.back().blocks();
+        if (!blocks(panelOf(leaf))) {
+          return false;
+        }
+        if (blockers_.size() == kMostBlockers) {
+          blockers_.pop_back();
+        }
+        blockers_.insert(blockers_.begin(), panelOf(leaf));
+        return true;
       });
 }
 

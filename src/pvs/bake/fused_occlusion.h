@@ -82,7 +82,9 @@ class FusedOcclusion {
   void addSpoiler(std::uint32_t panel);
   void findCrossingsTo(std::uint32_t end);
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
-  void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
+  void findCrossings(const Vec3d& from, const Vec3d& to);
+  bool isFree(const Vec3d& from, const Vec3d& to);
+  std::uint32_t panelOf(const BoxNode& leaf) const { return panels_.tree.objects[leaf.first_object].value; }
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
   bool clear() const;
   void addToComponent(const Crossing& crossing);
@@ -112,6 +114,7 @@ class FusedOcclusion {
   // By end: the crossings of a line of sight, with all that are not left out when it is first followed.
   std::array<std::vector<Crossing>, kEndCount> traced_;
   std::uint32_t traced_count_ = 0;
+  std::vector<std::uint32_t> blockers_;  // panels that blocked lines of sight, the last one first
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component
   std::vector<std::uint32_t> ahead_;    // members whose edges have not been looked at; a heap
