@@ -3,10 +3,13 @@
 // see (Embree). All begin where viewers are in the cell. A line to a point of the object's box sees it if
 // nothing opaque of another object is in between: what a test of one box an object has to keep. A line to a
 // point of one of its triangles sees it if it shows the object: what every test has to keep, so that
-// "seen, not kept" must be 0. "Clipped" lines do not count what is closer to the viewer than the near
+// "seen, not kept" must be 0. A line to a point of the surface of the box sees the closed box if nothing is
+// before that point: ties are visible, so a test of one box an object has to keep what only touches a surface
+// that hides all else of it, such as what stands on a floor, from below. "Clipped" lines do not count what is closer to the viewer than the near
 // distance, because near planes may clip it; sets have to keep what they see, in boxes, as well. The last
 // column is of the walk's views from these eyes, culled by the frustum and by the set of the cell, or of the
-// eye's side of its plane, alone: what is kept for each object that the pixels of 640 x 360 show.
+// eye's side of its plane, alone: what is kept for each object that the pixels of 640 x 360 show. "Best" is
+// what the closed boxes that lines see would give in place of the set: what is due to the size of the cell.
 //
 //   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
 //               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
@@ -125,12 +128,25 @@ bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t li
   return false;
 }
 
-// Whether a line reaches the object's box with nothing opaque of another object before it.
+// Where lines to a box end.
+enum class BoxPart : std::uint8_t { kInside, kSurface };
+
+Vec3d randomIn(const Box& box, BoxPart part, SplitMix& random) {
+  Vec3d point = randomIn(Vec3d(box.min), Vec3d(box.max), random);
+  if (part == BoxPart::kSurface) {
+    const int axis = static_cast<int>(random.below(3));
+    point[axis] = double{random.below(2) == 0 ? box.min[axis] : box.max[axis]};
+  }
+  return point;
+}
+
+// Whether a line reaches the object's box with nothing opaque of another object before it. What is at the
+// surface of the box, to the rounding of rays, is not before it.
 bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
-                 std::uint32_t lines, double near, SplitMix& random) {
+                 BoxPart part, std::uint32_t lines, double near, SplitMix& random) {
   return someLine(
-      rays, region, lines, 0.0f, near, random,
-      [&](SplitMix& numbers) { return randomIn(Vec3d(box.min), Vec3d(box.max), numbers); },
+      rays, region, lines, part == BoxPart::kSurface ? -1e-6f : 0.0f, near, random,
+      [&](SplitMix& numbers) { return randomIn(box, part, numbers); },
       [&](const RayScene::Batch&, const std::vector<RayHit>& hits) {
         std::uint32_t blocked = 0;
         for (const RayHit& hit : hits) {
@@ -231,8 +247,8 @@ void measure(const std::string& name, const Options& options) {
   const RayScene rays(scene.view());
   const ExactVisibility exact(scene.view());
   std::set<std::array<std::uint32_t, 3>> known;
-  std::uint64_t pairs = 0, kept = 0, box_seen = 0, clipped_seen = 0, seen = 0, seen_but_hidden = 0,
-                in_view = 0, exact_in_view = 0;
+  std::uint64_t pairs = 0, kept = 0, box_seen = 0, closed_box_seen = 0, clipped_seen = 0, seen = 0, seen_but_hidden = 0,
+                in_view = 0, best_in_view = 0, exact_in_view = 0;
   double us = 0.0;
   SplitMix random{1};
   pvs::CellBaker baker(bake);
@@ -248,6 +264,7 @@ void measure(const std::string& name, const Options& options) {
     keeps.add(sets.whole);
     const View view = loaded.path.view(i * eyes.size() / options.cells, scene.origin);
     in_view += keptInView(bake, sets, view);
+    pvs::CellSets best;
     exact_in_view += exact.visibleThroughPixels(view, 640, 360).size();
     const pvs::CellBox region = bake.regionOf(cell);
     for (std::uint32_t position = 0; position < bake.boxes.objects.size(); ++position) {
@@ -256,36 +273,46 @@ void measure(const std::string& name, const Options& options) {
         continue;
       }
       const ObjectId object = bake.boxes.objects[position];
-      const bool sees_box = lineSeesBox(rays, region, box, object, options.lines, 0.0, random);
-      clipped_seen +=
-          sees_box || lineSeesBox(rays, region, box, object, options.lines, settings.near_distance, random)
-              ? 1
-              : 0;
+      const auto seesBox = [&](BoxPart part, double near) {
+        return lineSeesBox(rays, region, box, object, part, options.lines, near, random);
+      };
+      const bool sees_box = seesBox(BoxPart::kInside, 0.0);
+      const bool sees_closed_box = sees_box || seesBox(BoxPart::kSurface, 0.0);
       // What is neither kept nor seen is hardly in doubt.
-      const std::uint32_t lines = sees_box || keeps.contains(position) ? options.lines : options.lines / 10;
+      const std::uint32_t lines = sees_closed_box || keeps.contains(position) ? options.lines : options.lines / 10;
       const bool sees = lineSees(rays, scene.view(), region, object, lines,
                                  keeps.contains(position) ? nullptr : &exact, random);
+      const bool sees_any = sees_closed_box || sees;
+      const bool clipped_sees = sees_any || seesBox(BoxPart::kInside, settings.near_distance);
+      if (sees_any) {
+        best.whole.push_back({position, position + 1});
+      }
+      closed_box_seen += sees_any ? 1 : 0;
+      clipped_seen += clipped_sees ? 1 : 0;
       box_seen += sees_box ? 1 : 0;
       pairs += 1;
       kept += keeps.contains(position) ? 1 : 0;
       seen += sees ? 1 : 0;
       seen_but_hidden += sees && !keeps.contains(position) ? 1 : 0;
     }
+    best_in_view += keptInView(bake, best, view);
   }
   const auto percent = [&](std::uint64_t count) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
   };
-  fmt::print(
-      "| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.0f} | {} "
-      "| "
-      "{:.2f} |\n",
-      name.substr(name.rfind('/') + 1),
-      std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
-      percent(box_seen), percent(clipped_seen), percent(seen), percent(kept),
-      static_cast<double>(kept) / static_cast<double>(box_seen),
-      static_cast<double>(kept) / static_cast<double>(clipped_seen),
-      static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs), seen_but_hidden,
-      static_cast<double>(in_view) / static_cast<double>(exact_in_view));
+  const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+    return static_cast<double>(a) / static_cast<double>(b);
+  };
+  fmt::print("| {} | {:.3g} | {} | {} |", name.substr(name.rfind('/') + 1),
+             std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs);
+  for (const std::uint64_t count : {box_seen, closed_box_seen, clipped_seen, seen, kept}) {
+    fmt::print(" {:.2f} |", percent(count));
+  }
+  for (const std::uint64_t count : {box_seen, closed_box_seen, clipped_seen, seen}) {
+    fmt::print(" {:.3f} |", ratio(kept, count));
+  }
+  fmt::print(" {:.0f} | {} | {:.2f} | {:.2f} |\n", us / static_cast<double>(pairs), seen_but_hidden,
+             ratio(in_view, exact_in_view), ratio(best_in_view, exact_in_view));
   std::fflush(stdout);
 }
 
@@ -294,9 +321,10 @@ void measure(const std::string& name, const Options& options) {
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   fmt::print(
-      "| scene | cell, m | cells | pairs | lines to boxes, % | clipped, % | to triangles, % | kept, % | kept "
-      "/ lines to boxes | clipped | to triangles | us a pair | seen, not kept | in view / exact |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| scene | cell, m | cells | pairs | lines to boxes, % | closed boxes, % | clipped, % | to triangles, % "
+      "| kept, % | kept / lines to boxes | closed boxes | clipped | to triangles | us a pair "
+      "| seen, not kept | in view / exact | best |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& scene : options.scenes) {
     measure(scene, options);
   }
