@@ -5,11 +5,12 @@
 // point of one of its triangles sees it if it shows the object: what every test has to keep, so that
 // "seen, not kept" must be 0. A line to a point of the surface of the box sees the closed box if nothing is
 // before that point: ties are visible, so a test of one box an object has to keep what only touches a surface
-// that hides all else of it, such as what stands on a floor, from below. "Clipped" lines do not count what is closer to the viewer than the near
-// distance, because near planes may clip it; sets have to keep what they see, in boxes, as well. The last
-// column is of the walk's views from these eyes, culled by the frustum and by the set of the cell, or of the
-// eye's side of its plane, alone: what is kept for each object that the pixels of 640 x 360 show. "Best" is
-// what the closed boxes that lines see would give in place of the set: what is due to the size of the cell.
+// that hides all else of it, such as what stands on a floor, from below. "Clipped" lines do not count what is
+// closer to the viewer than the near distance, because near planes may clip it; sets have to keep what they
+// see, in boxes, as well. The last two columns are of the walk's views from these eyes, culled by the frustum
+// and by the set of the cell, or of the eye's side of its plane, alone: what is kept for each object that the
+// pixels of 640 x 360 show. "Best" is what the closed boxes that lines see from all of the cell would give in
+// place of the set: what is due to the size of the cell.
 //
 //   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
 //               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
@@ -247,8 +248,8 @@ void measure(const std::string& name, const Options& options) {
   const RayScene rays(scene.view());
   const ExactVisibility exact(scene.view());
   std::set<std::array<std::uint32_t, 3>> known;
-  std::uint64_t pairs = 0, kept = 0, box_seen = 0, closed_box_seen = 0, clipped_seen = 0, seen = 0, seen_but_hidden = 0,
-                in_view = 0, best_in_view = 0, exact_in_view = 0;
+  std::uint64_t pairs = 0, kept = 0, box_seen = 0, closed_box_seen = 0, clipped_seen = 0, seen = 0,
+                seen_but_hidden = 0, in_view = 0, best_in_view = 0, exact_in_view = 0;
   double us = 0.0;
   SplitMix random{1};
   pvs::CellBaker baker(bake);
@@ -279,7 +280,8 @@ void measure(const std::string& name, const Options& options) {
       const bool sees_box = seesBox(BoxPart::kInside, 0.0);
       const bool sees_closed_box = sees_box || seesBox(BoxPart::kSurface, 0.0);
       // What is neither kept nor seen is hardly in doubt.
-      const std::uint32_t lines = sees_closed_box || keeps.contains(position) ? options.lines : options.lines / 10;
+      const std::uint32_t lines =
+          sees_closed_box || keeps.contains(position) ? options.lines : options.lines / 10;
       const bool sees = lineSees(rays, scene.view(), region, object, lines,
                                  keeps.contains(position) ? nullptr : &exact, random);
       const bool sees_any = sees_closed_box || sees;
@@ -321,7 +323,8 @@ void measure(const std::string& name, const Options& options) {
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   fmt::print(
-      "| scene | cell, m | cells | pairs | lines to boxes, % | closed boxes, % | clipped, % | to triangles, % "
+      "| scene | cell, m | cells | pairs | lines to boxes, % | closed boxes, % | clipped, % | to "
+      "triangles, % "
       "| kept, % | kept / lines to boxes | closed boxes | clipped | to triangles | us a pair "
       "| seen, not kept | in view / exact | best |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");

@@ -532,6 +532,40 @@ TEST(RegionOcclusion, WhatIsLeftOutMakesNoLineClear) {
             FusedOcclusion::Answer::kClear);
 }
 
+// What is remembered of one question, such as what blocked its lines, must not decide another.
+TEST(RegionOcclusion, AnswersDoNotDependOnEarlierQuestions) {
+  std::map<FusedOcclusion::Answer, int> answers;
+  int clear_lines = 0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    std::mt19937 random(seed);
+    const Scene scene = untidyScene(random);
+    const Panels panels = findPanels(scene.view());
+    FusedOcclusion asked_before(panels, 100.0);
+    for (int i = 0; i < 300; ++i) {
+      const auto place = [&] { return std::uniform_real_distribution<double>(-5.0, 5.0)(random); };
+      const Vec3d at{place(), place(), place()};
+      const auto object = static_cast<std::uint32_t>(random() % scene.objects.size());
+      const Box& box = scene.objects[object].bounds;
+      const FusedTarget target{.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object};
+      const std::uint32_t left_out = random() % 2 == 0 ? object : kNoObject;
+      FusedOcclusion fresh(panels, 100.0), fresh_for_line(panels, 100.0);
+      const FusedOcclusion::Answer answer = fresh.ask({at, at + Vec3d{0.5, 0.5, 0.5}}, target, kNear);
+      ASSERT_EQ(asked_before.ask({at, at + Vec3d{0.5, 0.5, 0.5}}, target, kNear), answer) << "seed " << seed;
+      const Vec3d end = placeIn(target.box, random);
+      const bool is_clear = fresh_for_line.isClear(at, end, left_out);
+      ASSERT_EQ(asked_before.isClear(at, end, left_out), is_clear) << "seed " << seed;
+      ++answers[answer];
+      clear_lines += is_clear ? 1 : 0;
+    }
+  }
+  for (const auto answer : {FusedOcclusion::Answer::kHidden, FusedOcclusion::Answer::kClear,
+                            FusedOcclusion::Answer::kUndecided}) {
+    EXPECT_GT(answers[answer], 50) << "the test would prove little";
+  }
+  EXPECT_GT(clear_lines, 50);
+  EXPECT_LT(clear_lines, 2300);
+}
+
 TEST(RegionOcclusion, PanelsDoNotReachAroundTheEndOfAWall) {
   // A floor of many pieces goes on around a wall: what is before the wall is joined with what is behind it
   // only beside the shaft. Viewers are beside the floor, on both sides of its height, so that the edge of the

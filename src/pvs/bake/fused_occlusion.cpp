@@ -246,7 +246,8 @@ void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to) {
       [&](const BoxNode& leaf) { crossPanel(panelOf(leaf), from, to); });
 }
 
-// Whether no panel blocks the line of sight. What blocked other lines is asked first: it often blocks this one.
+// Whether no panel blocks the line of sight. What blocked other lines is asked first: it often blocks this
+// one.
 bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to) {
   const auto blocks = [&](std::uint32_t panel) {
     crossings_.clear();
