@@ -481,11 +481,11 @@ TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {
   }
 }
 
-TEST(Bake, LooksForOccludersAtAnyDistanceWhereObjectsAreMany) {
+TEST(Bake, KeepsNoSamplesAndLooksAtAnyDistanceWhereObjectsAreMany) {
   for (const bool many : {false, true}) {
-    const std::uint32_t boxes = many ? static_cast<std::uint32_t>(kManyObjects) : 1000;
+    const std::uint32_t boxes = many ? static_cast<std::uint32_t>(BakeSettings::kManyObjects) : 1000;
     const Scene scene = makeBoxCity({.buildings = 100, .boxes = boxes});
-    ASSERT_EQ(scene.objects.size() > kManyObjects, many);
+    ASSERT_EQ(scene.objects.size() > BakeSettings::kManyObjects, many);
     const Result<Bake> bake = Bake::plan(scene.view(), OccluderSet(), {.max_depth = 1}),
                        near = Bake::plan(scene.view(), OccluderSet(), {.max_depth = 1, .search_distance = 5});
     ASSERT_TRUE(bake && near);
@@ -495,6 +495,9 @@ TEST(Bake, LooksForOccludersAtAnyDistanceWhereObjectsAreMany) {
     }
     const double diagonal = length(Vec3d(bounds.max) - Vec3d(bounds.min));
     EXPECT_EQ(bake->firstPart().search_distance >= diagonal, many);
+    Bake::Worker worker(*bake);
+    worker.bake(bake->firstPart());
+    EXPECT_EQ(worker.stats().samples == 0, many);
     EXPECT_EQ(near->firstPart().search_distance, 5.0);
   }
 }

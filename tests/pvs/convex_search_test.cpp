@@ -76,7 +76,13 @@ struct Town {
              serialFor) {}
   static Scene made(std::uint64_t seed) {
     Random random(seed);
-    return randomTown(random, 20 + 40 * static_cast<std::uint32_t>(seed % 10));
+    Scene scene = randomTown(random, 20 + 40 * static_cast<std::uint32_t>(seed % 10));
+    // Nothing hides an object without a box, and its box is none of those around it.
+    if (seed % 3 != 0) {
+      const float broken = seed % 3 == 1 ? INFINITY : std::numeric_limits<float>::quiet_NaN();
+      scene.objects[seed % scene.objects.size()].bounds.max.y = broken;
+    }
+    return scene;
   }
 };
 

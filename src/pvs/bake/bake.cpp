@@ -120,13 +120,14 @@ Box boundsOf(const SceneView& scene) {
   return bounds;
 }
 
-// An eighth of the scene's diagonal spans a few rooms or a few streets. Where lines of sight find occluders,
-// those that are far away take no time until something is behind them.
+// An eighth of the scene's diagonal spans a few rooms or a few streets. Many objects are searched by lines of
+// sight, for which occluders that are far away take no time until something is behind them. But it depends on
+// the number of objects alone, so that the sets are the same where samples are kept.
 double firstSearchDistance(const BakeScene& scene) {
   if (scene.settings.search_distance > 0.0) {
     return scene.settings.search_distance;
   }
-  return scene.position_of.size() > kManyObjects ? scene.diagonal : 0.125 * scene.diagonal;
+  return scene.position_of.size() > BakeSettings::kManyObjects ? scene.diagonal : 0.125 * scene.diagonal;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,

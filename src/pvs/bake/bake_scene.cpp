@@ -295,7 +295,6 @@ BoxTree BakeScene::reachOfOccluders(std::uint32_t level) const {
 
 void BakeScene::countOccluders() {
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
-    position_of_occluder.push_back(position_of[occluders[i].object.value]);
     if (doors.isDoor(occluders[i].object)) {
       continue;
     }
@@ -313,7 +312,8 @@ bool BakeScene::thorough() const {
 }
 
 std::size_t BakeScene::sampleBytes() const {
-  return settings.sample_bytes.value_or(position_of.size() > kManyObjects ? 0 : kDefaultSampleBytes);
+  return settings.sample_bytes.value_or(
+      position_of.size() > BakeSettings::kManyObjects ? 0 : kDefaultSampleBytes);
 }
 
 bool BakeScene::mayDivide(const OctreeCell& cell) const {

@@ -32,8 +32,7 @@ CellRecall::CellRecall(const BakeScene& scene, const Recall* recall)
     answers_before_.emplace(*recall_);
   }
   for (std::uint32_t i = 0; i < scene.occluders.size(); ++i) {
-    const ObjectId object = scene.occluders[i].object;
-    occludes_[scene.position_of[object.value]] = !scene.doors.isDoor(object);
+    occludes_[scene.position_of_occluder[i]] = !scene.doors.isDoor(scene.occluders[i].object);
   }
 }
 

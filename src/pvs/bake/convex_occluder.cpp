@@ -243,6 +243,7 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
   }
   const Vec3d gaps = gapsBetween(occluder.bounds, corners);
   double gap = occluder.body ? maxComponent(gaps) * kRoundDown : -INFINITY;  // of the best separating plane
+  // A wide gap along an axis decides without the faces.
   if (gap - occluder.margin > std::max(near_distance, 0.0)) {
     return true;
   }

@@ -10,10 +10,10 @@ namespace {
 constexpr std::size_t kMostCandidates = 8192;
 // A list of no more than this is used for all that is below, without leaving out more of it.
 constexpr std::size_t kFewCandidates = 8;
-// Which occluders of a list of no more than this are separated from the region is found out at once.
+// In lists of no more than this, occluders that are not separated from the region are left out at once.
 constexpr std::size_t kFewToSeparate = 128;
 
-// By point: the corner of a box on the same side of the middle of all of them.
+// By point: the number of the box corner that lies on the point's side of the region's middle.
 void findSides(std::span<const Vec3d> corners, std::vector<std::uint32_t>& sides) {
   const Vec3d middle = pvs::boundsOf(corners).centre();
   sides.clear();
@@ -123,20 +123,22 @@ bool ConvexSearch::visitGroup(std::uint32_t first, std::uint32_t count, Candidat
 }
 
 bool ConvexSearch::visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth) {
-  candidates = candidatesBelow(node, candidates, depth);
   const ShadowTree::Node& inner = scene_.shadow_tree.nodes()[node];
-  if (candidates != nullptr && candidates->size() == 0) {
+  const bool any = scene_.shadow_tree.mayHoldHidden(node);
+  candidates = any ? candidatesBelow(node, candidates, depth) : nullptr;
+  if (!any || (candidates != nullptr && candidates->size() == 0)) {
     seen_triangles_ += scene_.triangles.of({&inner.objects, 1});
     return !done();
   }
   return visit(inner.first_child, inner.child_count, candidates, depth + 1);
 }
 
-template <typename To>
-std::array<Cone, 4> ConvexSearch::conesTo(const To& to) const {
+template <typename BoxOf>
+std::array<Cone, 4> ConvexSearch::conesTo(const BoxOf& box_of) const {
   const auto cone = [&](std::size_t i) {
+    constexpr std::array<std::uint32_t, 4> kFromAPoint{0, 3, 5, 6};
     const std::size_t corner = std::min(i, corners_.size() - 1);
-    return scene_.coneTo(to(side_of_[corner]), corners_[corner]);
+    return scene_.coneTo(box_of(corners_.size() == 1 ? kFromAPoint[i] : side_of_[corner]), corners_[corner]);
   };
   return {cone(0), cone(1), cone(2), cone(3)};
 }

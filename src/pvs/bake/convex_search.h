@@ -4,12 +4,12 @@
 // a box from all of the region meets each line from there to the box. So a few lines leave few occluders, and
 // the time follows what is seen, not how many occluders there are.
 //
+// Such a line ends in the corner of the box on the same side as the corner of the region where it begins. Few
+// occluders meet several of these, for they lie on the hull of both.
+//
 // The box tree is searched from the root down. A node that an occluder hides ends its branch. To what is
 // below others, occluders are passed on that lie in the cones from some corners of the region to where such
 // lines end. What one occluder hides is often next to what it hid before, so the last ones are asked first.
-//
-// A line from a corner of the region ends in the corner of the box on the same side. Such lines are the edges
-// of the hull of both, and few occluders meet several of them.
 
 #include <array>
 #include <cstddef>
@@ -91,13 +91,14 @@ class ConvexSearch {
   // Returns those of the candidates that may hide something below a node. They are kept by its depth. Returns
   // null if they are too many.
   Candidates candidatesBelow(std::uint32_t node, Candidates above, std::size_t depth);
-  // Cones from some corners to boxes: to(i) is where lines end that begin on the same side as corner i of a
-  // box.
-  template <typename To>
-  std::array<Cone, 4> conesTo(const To& to) const;
+  // Cones from some corners. box_of(i): the box where lines end that begin on the same side as corner i of a
+  // box does.
+  template <typename BoxOf>
+  std::array<Cone, 4> conesTo(const BoxOf& box_of) const;
   // Whether the occluder is one of the choice, and not known to be superfluous.
   bool counts(std::uint32_t occluder, const Box& bounds) const;
-  bool isSeparated(std::uint32_t occluder);  // from the corners
+  // Whether the occluder is separated from the corners.
+  bool isSeparated(std::uint32_t occluder);
   // Sets lines_ to lines from each corner to two opposite corners of the node's box.
   void findLines(std::uint32_t node);
   // Whether all of these lines meet the occluder's box.

@@ -177,7 +177,11 @@ constexpr std::size_t kPadding = 8;  // lanes
 constexpr double kNodeMargin = 0x1p-46;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr CellBox kEverywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+constexpr CellBox kNoPoints{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+
+void extend(CellBox& box, const CellBox& by) {
+  box = {min(box.min, by.min), max(box.max, by.max)};
+}
 
 // True for nodes that are malformed or have a malformed node below them.
 std::vector<bool> brokenNodes(const BoxTreeView& tree) {
@@ -317,20 +321,18 @@ ShadowTree::ShadowTree(const BoxTreeView& tree, double reach) {
 }
 
 void ShadowTree::findCorners(const BoxTreeView& tree, std::span<const std::uint32_t> from) {
-  lowest_.resize(from.size(), kEverywhere);
-  highest_.resize(from.size(), kEverywhere);
+  lowest_.resize(from.size(), kNoPoints);
+  highest_.resize(from.size(), kNoPoints);
   for (std::size_t i = from.size(); i-- > 0;) {
-    if (!mayBeHidden(static_cast<std::uint32_t>(i))) {
-      continue;
-    }
     const Node& node = arrays_.nodes[i];
-    const Vec3d low(tree.nodes[from[i]].bounds.min), high(tree.nodes[from[i]].bounds.max);
-    const bool leaf = node.child_count == 0;
-    lowest_[i] = {low, leaf ? low : lowest_[node.first_child].max};
-    highest_[i] = {leaf ? high : highest_[node.first_child].min, high};
+    if (node.child_count == 0 && mayBeHidden(static_cast<std::uint32_t>(i))) {
+      const Vec3d low(tree.nodes[from[i]].bounds.min), high(tree.nodes[from[i]].bounds.max);
+      lowest_[i] = {low, low};
+      highest_[i] = {high, high};
+    }
     for (std::uint32_t child = node.first_child; child < node.first_child + node.child_count; ++child) {
-      lowest_[i].max = max(lowest_[i].max, lowest_[child].max);
-      highest_[i].min = min(highest_[i].min, highest_[child].min);
+      extend(lowest_[i], lowest_[child]);
+      extend(highest_[i], highest_[child]);
     }
   }
 }

@@ -44,7 +44,10 @@ class ShadowTree {
     const Vec3d half{arrays_.hx[node], arrays_.hy[node], arrays_.hz[node]};
     return {centreOf(node) - half, centreOf(node) + half};
   }
-  // Bounds of corner i of the boxes of all leaves below a node; bits of i as in CellBox::corner.
+  // False if no leaf below the node may be hidden.
+  bool mayHoldHidden(std::uint32_t node) const { return lowest_[node].min.x <= lowest_[node].max.x; }
+  // Bounds of corner i of the boxes of all leaves below a node that may be hidden, of which there must be
+  // some. The bits of i are those of CellBox::corner.
   CellBox cornersBelow(std::uint32_t node, std::uint32_t i) const {
     const CellBox &low = lowest_[node], &high = highest_[node];
     CellBox bounds;
@@ -75,7 +78,7 @@ class ShadowTree {
   void findCorners(const BoxTreeView& tree, std::span<const std::uint32_t> from);
 
   Arrays arrays_;
-  // By node: bounds of the least and of the greatest points of the boxes of the leaves below.
+  // By node: bounds of the least and of the greatest points of the boxes below that may be hidden.
   std::vector<CellBox> lowest_, highest_;
   std::vector<std::uint32_t> leaf_of_;  // by place in BoxTree::objects: its node
 };

@@ -89,7 +89,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       command, "--search-distance", settings.search_distance, 0.0, kMax,
       fmt::format("occluders are looked for within so many metres at first; 0: an eighth of the scene's "
                   "diagonal, or all of it with more than {} objects",
-                  kManyObjects));
+                  BakeSettings::kManyObjects));
   addDecimalOption(
       command, "--occluder-size", settings.occluder_size, 0.0, kMax,
       "an occluder is of use to a cell when its area is so many times that of the cell's smallest face, or "
@@ -105,10 +105,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "--sample-memory", options.sample_mib,
           fmt::format(
               "MiB for what each occluder hides from each corner of a cell, kept for its neighbours as in "
-              "the paper, of each process; 0: none, which takes less memory, and less time where objects are "
-              "many "
-              "(default: 1024; 0 with more than {} objects)",
-              kManyObjects))
+              "the paper, of each process; 0: none, which takes less memory, and less time where objects "
+              "are many (default: 1024; 0 with more than {} objects)",
+              BakeSettings::kManyObjects))
       ->check(CLI::Range(0u, kMaxMib));
   command
       .add_option("--databases", options.databases, "occluder databases to store as well (several: a,b,c)")
@@ -184,9 +183,9 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
   settings.viewers = viewers.boxes;
   settings.witnesses = !options.witnesses.empty();
   settings.answers = !options.answersFile().empty();
-  const std::uint32_t sample_mib =
-      options.sample_mib.value_or(scene.objects.size() > kManyObjects ? 0 : 1024);
-  settings.sample_bytes = (std::size_t{sample_mib} << 20) / options.common.threads;
+  if (options.sample_mib || scene.objects.size() <= BakeSettings::kManyObjects) {
+    settings.sample_bytes = (std::size_t{options.sample_mib.value_or(1024)} << 20) / options.common.threads;
+  }
   return settings;
 }
 

@@ -29,11 +29,11 @@ enum class BakeOcclusion : std::uint8_t {
   kFused,   // and surfaces of any number of triangles together
 };
 
-// Scenes of more objects are searched by lines of sight, and occluders are looked for at any distance, unless
-// the settings say otherwise.
-inline constexpr std::size_t kManyObjects = 20'000;
-
 struct BakeSettings {
+  // Scenes of more objects are searched by lines of sight, and occluders are looked for at any distance,
+  // unless the settings say otherwise.
+  static constexpr std::size_t kManyObjects = 20'000;
+
   // Fused sets are smaller, and take some hundred times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
