@@ -38,6 +38,12 @@ class ScratchArray {
   T* data_;
 };
 
+// Frees the memory of a vector. Assigning {} to it would only empty it.
+template <typename Vector>
+void freeVector(Vector& vector) {
+  Vector().swap(vector);
+}
+
 // A vector whose items have no value before the first assignment either: to be filled whole, at once.
 template <typename T>
 LargeVector<T> unsetVector(std::size_t size) {

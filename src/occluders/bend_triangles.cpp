@@ -2,21 +2,35 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace sightline::occluders {
+
+TriangleBender::TriangleBender(std::span<const MeshEdge> edges, const base::Rows<std::uint32_t>& through,
+                               BentTriangles& bent)
+    : edges_(edges), through_(through), bent_(bent) {
+  first_of_low_.resize(edges.empty() ? 1 : std::size_t{edges.back().low} + 2);
+  for (const MeshEdge& edge : edges) {
+    ++first_of_low_[edge.low + 1];
+  }
+  std::partial_sum(first_of_low_.begin(), first_of_low_.end(), first_of_low_.begin());
+}
 
 // The vertices through which the way from a to b is led, in this direction.
 void TriangleBender::findWay(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& way) const {
   way.clear();
   const MeshEdge edge = meshEdge(a, b);
-  const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
-  if (found == edges_.end() || *found != edge) {
+  if (std::size_t{edge.low} + 1 >= first_of_low_.size()) {
     return;
   }
-  const std::span<const std::uint32_t> through = through_[static_cast<std::size_t>(found - edges_.begin())];
-  way.assign(through.begin(), through.end());
-  if (a > b) {
-    std::reverse(way.begin(), way.end());
+  for (std::uint32_t i = first_of_low_[edge.low]; i < first_of_low_[edge.low + 1]; ++i) {
+    if (edges_[i].high == edge.high) {
+      const std::span<const std::uint32_t> through = through_[i];
+      way.assign(through.begin(), through.end());
+      if (a > b) {
+        std::reverse(way.begin(), way.end());
+      }
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sightline/base/large_vector.h"
 #include "src/base/rows.h"
 #include "src/occluders/mesh_edge.h"
 
@@ -26,8 +27,7 @@ class TriangleBender {
   // edges: ascending. through: by edge, the vertices that it is led through, from its lower vertex on. All
   // must outlive this.
   TriangleBender(std::span<const MeshEdge> edges, const base::Rows<std::uint32_t>& through,
-                 BentTriangles& bent)
-      : edges_(edges), through_(through), bent_(bent) {}
+                 BentTriangles& bent);
 
   // Appends the pieces of a triangle: itself, if no edge of it is led through vertices. It is divided as if
   // these lay on the edges: a fan from a corner to the opposite edge, whose first and last triangle are fans
@@ -44,6 +44,7 @@ class TriangleBender {
   std::span<const MeshEdge> edges_;
   const base::Rows<std::uint32_t>& through_;
   BentTriangles& bent_;
+  LargeVector<std::uint32_t> first_of_low_;  // by lower vertex, and one more: the first of its edges
   // Scratch for one triangle.
   std::vector<std::uint32_t> ways_[3], loop_;
   std::vector<std::pair<MeshEdge, bool>> steps_;  // along loop_; true: from the lower vertex

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "sightline/base/large_vector.h"
+#include "src/base/sort_keys.h"
 
 namespace sightline::occluders {
 namespace {
@@ -16,11 +18,7 @@ std::uint64_t spread(std::uint64_t bits) {
   return (bits | bits << 2) & 0x1249249249249249ull;
 }
 
-struct KeyedBox {
-  std::uint64_t key;  // seven bits of size, the largest first, then 57 of the place
-  std::uint32_t box;
-};
-
+// Seven bits of size, the largest first, then 57 of the place.
 std::uint64_t keyOf(const Box& box, const Vec3d& corner, double size) {
   const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
   int smaller = 0;
@@ -43,18 +41,17 @@ BoxPairs::BoxPairs(std::span<const Box> boxes, std::span<const std::uint32_t> nu
   const Vec3d corner(bounds.min);
   // Not zero, so that places are finite.
   const double size = boxes.empty() ? 1.0 : std::max(maxComponent(Vec3d(bounds.max) - corner), 1e-30);
-  std::vector<KeyedBox> order(boxes.size());
+  LargeVector<base::SortKey> order;  // and the number of the box
+  order.reserve(boxes.size());
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    order[i] = {keyOf(boxes[i], corner, size), i};
+    order.push_back({keyOf(boxes[i], corner, size), i});
   }
-  std::sort(order.begin(), order.end(), [](const KeyedBox& a, const KeyedBox& b) {
-    return a.key != b.key ? a.key < b.key : a.box < b.box;
-  });
+  base::KeySorter().sort(order);
   boxes_.reserve(boxes.size());
   numbers_.reserve(boxes.size());
-  for (const KeyedBox& keyed : order) {
-    boxes_.push_back(boxes[keyed.box]);
-    numbers_.push_back(numbers[keyed.box]);
+  for (const base::SortKey& key : order) {
+    boxes_.push_back(boxes[key.second]);
+    numbers_.push_back(numbers[key.second]);
   }
   for (const std::vector<Box>* below = &boxes_; below->size() > 1 || (levels_.empty() && !below->empty());) {
     std::vector<Box> level((below->size() + kWidth - 1) / kWidth);

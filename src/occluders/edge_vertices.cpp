@@ -36,6 +36,7 @@ using geometry::Lattice;
 
 constexpr std::size_t kSearchesOfPart = 4096, kEndsOfPart = 65536, kLineRowsOfPart = 16384;
 constexpr std::size_t kVerticesOfRow = 4;  // on average
+constexpr int kWantedBitsOfRow = 3;        // 2 to this power of lines that are asked for are told apart
 constexpr std::uint64_t kMostSteps = 16;   // more places of an edge than these are not looked up one by one
 
 // How the vertices on an edge are found.
@@ -79,15 +80,24 @@ class AxisLines {
     }
   };
 
-  // numbers: of the vertices to group.
-  AxisLines(std::span<const Vec3f> vertices, std::span<const std::uint32_t> numbers, int axis,
-            const ParallelFor& parallel_for)
+  // numbers: of the vertices to group. on_lines: points on all lines that are asked for.
+  AxisLines(std::span<const Vec3f> vertices, std::span<const std::uint32_t> numbers,
+            std::span<const Vec3f> on_lines, int axis, const ParallelFor& parallel_for)
       : axis_(axis), shift_(64 - static_cast<int>(std::bit_width(numbers.size() / kVerticesOfRow + 1))) {
+    // Which lines are asked for, by some bits of their hash: most vertices may be on none of them.
+    const int bit_shift = shift_ - kWantedBitsOfRow;
+    std::vector<bool> wanted(std::size_t{1} << (64 - bit_shift));
+    for (const Vec3f& point : on_lines) {
+      wanted[hashOf(entryOf(point, 0)) >> bit_shift] = true;
+    }
     base::groupIntoRows(parallel_for, std::size_t{1} << (64 - shift_), numbers.size(), rows_.first(),
                         rows_.all(), [&](std::size_t begin, std::size_t end, auto&& pair) {
                           for (std::size_t i = begin; i < end; ++i) {
                             const Entry entry = entryOf(vertices[numbers[i]], numbers[i]);
-                            pair(rowOf(entry), entry);
+                            const std::uint64_t hash = hashOf(entry);
+                            if (wanted[hash >> bit_shift]) {
+                              pair(static_cast<std::size_t>(hash >> shift_), entry);
+                            }
                           }
                         });
     base::Parts(rows_.count(), kLineRowsOfPart)
@@ -113,9 +123,8 @@ class AxisLines {
   }
   // Adding zero turns -0 into +0, so that equal coordinates have equal bits.
   static std::uint32_t bitsOf(float coordinate) { return std::bit_cast<std::uint32_t>(coordinate + 0.0f); }
-  std::size_t rowOf(const Entry& entry) const {
-    return static_cast<std::size_t>(base::mixBits(entry.line) >> shift_);
-  }
+  static std::uint64_t hashOf(const Entry& entry) { return base::mixBits(entry.line); }
+  std::size_t rowOf(const Entry& entry) const { return static_cast<std::size_t>(hashOf(entry) >> shift_); }
   // Returns those of the line of `low` that come after it and before `high`, or more than kMostBends of them.
   std::span<const Entry> within(const Entry& low, const Entry& high) const {
     const std::span<const Entry> row = rows_[rowOf(low)];
@@ -241,6 +250,19 @@ class EdgeSearch {
     return steps;
   }
 
+  // Calls visit(step, place) for the places of an edge where a vertex can be.
+  template <typename Visit>
+  void forEachPlace(const MeshEdge& edge, const Visit& visit) const {
+    const Steps steps = stepsOf(edge);
+    for (std::uint64_t i = 1; i < steps.count; ++i) {
+      const Vec3d place = Vec3d(at(edge.low)) + steps.step * static_cast<double>(i);
+      const Vec3f rounded(place);
+      if (Vec3d(rounded) == place) {
+        visit(i, rounded);
+      }
+    }
+  }
+
   void chooseSearches() {
     base::Parts(edges_.size(), kSearchesOfPart)
         .run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
@@ -250,9 +272,6 @@ class EdgeSearch {
             }
           }
         });
-    for (const Search search : searches_) {
-      ++counts_[static_cast<std::size_t>(search)];
-    }
   }
   Search searchOf(const MeshEdge& edge) const {
     const Vec3f &low = at(edge.low), &high = at(edge.high);
@@ -271,25 +290,88 @@ class EdgeSearch {
            : steps > 1                      ? Search::kInSteps
                                             : Search::kNothing;
   }
-  bool any(Search search) const { return counts_[static_cast<std::size_t>(search)] > 0; }
 
   void prepareSearches() {
     const auto endsIf = [this](bool wanted) {
       return wanted ? std::span<const std::uint32_t>(ends_) : std::span<const std::uint32_t>();
     };
-    for (int axis = 0; axis < 3; ++axis) {
-      // Points are looked up among the lines along the first axis.
-      const bool wanted = any(static_cast<Search>(axis)) || (axis == 0 && any(Search::kInSteps));
-      lines_.emplace_back(vertices_, endsIf(wanted), axis, parallel_for_);
+    // By axis. Places of steps are looked up among the lines along the first axis.
+    std::array<std::vector<Vec3f>, 3> on_lines;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (searches_[e] == Search::kInSteps) {
+        forEachPlace(edges_[e], [&](std::uint64_t, const Vec3f& place) { on_lines[0].push_back(place); });
+      } else if (searches_[e] < Search::kInSteps) {
+        on_lines[static_cast<std::size_t>(searches_[e])].push_back(at(edges_[e].low));
+      }
     }
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<Vec3f>& points = on_lines[static_cast<std::size_t>(axis)];
+      lines_.emplace_back(vertices_, endsIf(!points.empty()), points, axis, parallel_for_);
+    }
+    const std::vector<std::uint32_t> numbers = endsInBoxes();
     std::vector<Vec3d> points;
     std::vector<Box> boxes;
-    for (const std::uint32_t v : endsIf(any(Search::kInBoxes))) {
+    for (const std::uint32_t v : numbers) {
       points.emplace_back(at(v));
       boxes.push_back(grownBox(points.back(), points.back(), 0.0));
     }
     lattice_ = Lattice::of(points);
-    boxes_.emplace(boxes, endsIf(!boxes.empty()));
+    boxes_.emplace(boxes, numbers);
+  }
+
+  // Lists the ends that may lie in boxes around the edges that are searched for in boxes: few, if those are
+  // few. The others are in cells of a coarse grid that no such box reaches, but for cells that share a bit.
+  std::vector<std::uint32_t> endsInBoxes() const {
+    constexpr double kCells = 256.0;  // along the longest side
+    constexpr std::uint64_t kBits = std::uint64_t{1} << 20;
+    Box bounds;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (searches_[e] == Search::kInBoxes) {
+        bounds.extend(at(edges_[e].low));
+        bounds.extend(at(edges_[e].high));
+      }
+    }
+    if (bounds.empty()) {
+      return {};
+    }
+    const Vec3d corner(bounds.min);
+    const double scale = kCells / maxComponent(Vec3d(bounds.max) - corner);
+    using Cell = std::array<std::uint32_t, 3>;
+    const auto cellOf = [&](const Vec3f& point) {
+      const Vec3d place = (Vec3d(point) - corner) * scale;
+      return Cell{static_cast<std::uint32_t>(place.x), static_cast<std::uint32_t>(place.y),
+                  static_cast<std::uint32_t>(place.z)};
+    };
+    const auto bitOf = [](const Cell& cell) {
+      return base::mixBits(std::uint64_t{cell[0]} << 40 | std::uint64_t{cell[1]} << 20 | cell[2]) % kBits;
+    };
+    std::vector<bool> reached(kBits);
+    std::uint64_t cells = 0;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (searches_[e] != Search::kInBoxes) {
+        continue;
+      }
+      const Vec3f &low = at(edges_[e].low), &high = at(edges_[e].high);
+      const Cell first = cellOf(min(low, high)), last = cellOf(max(low, high));
+      cells += std::uint64_t{last[0] - first[0] + 1} * (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
+      if (cells > ends_.size()) {
+        return {ends_.begin(), ends_.end()};  // to mark them would take longer than is saved
+      }
+      for (Cell cell = first; cell[0] <= last[0]; ++cell[0]) {
+        for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
+          for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
+            reached[bitOf(cell)] = true;
+          }
+        }
+      }
+    }
+    std::vector<std::uint32_t> ends;
+    for (const std::uint32_t v : ends_) {
+      if (contains(bounds, {at(v), at(v)}) && reached[bitOf(cellOf(at(v)))]) {
+        ends.push_back(v);
+      }
+    }
+    return ends;
   }
 
   base::Rows<std::uint32_t> findAll() const {
@@ -348,16 +430,11 @@ class EdgeSearch {
   }
 
   void findInSteps(const MeshEdge& edge, std::vector<OnEdge>& found) const {
-    const Steps steps = stepsOf(edge);
-    for (std::uint64_t i = 1; i < steps.count; ++i) {
-      const Vec3d place = Vec3d(at(edge.low)) + steps.step * static_cast<double>(i);
-      const Vec3f rounded(place);
-      if (Vec3d(rounded) == place) {
-        for (const AxisLines::Entry& entry : lines_[0].at(rounded)) {
-          found.push_back({static_cast<float>(i), entry.vertex});
-        }
+    forEachPlace(edge, [&](std::uint64_t step, const Vec3f& place) {
+      for (const AxisLines::Entry& entry : lines_[0].at(place)) {
+        found.push_back({static_cast<float>(step), entry.vertex});
       }
-    }
+    });
   }
 
   void findInBoxes(const MeshEdge& edge, std::vector<OnEdge>& found) const {
@@ -388,13 +465,12 @@ class EdgeSearch {
   std::span<const Vec3f> vertices_;
   std::span<const MeshEdge> edges_;
   const ParallelFor& parallel_for_;
-  LargeVector<Search> searches_;         // by edge
-  std::array<std::size_t, 6> counts_{};  // of edges, by Search
-  LargeVector<std::uint32_t> ends_;      // vertices at which edges end, ascending
-  std::array<int, 3> lowest_{};          // by axis: the exponent of the lowest bit of any coordinate
-  std::vector<AxisLines> lines_;         // by axis; empty if not wanted
-  std::optional<BoxPairs> boxes_;        // of ends; empty if not wanted
-  Lattice lattice_;                      // of ends, if there are boxes
+  LargeVector<Search> searches_;     // by edge
+  LargeVector<std::uint32_t> ends_;  // vertices at which edges end, ascending
+  std::array<int, 3> lowest_{};      // by axis: the exponent of the lowest bit of any coordinate
+  std::vector<AxisLines> lines_;     // by axis; empty if not wanted
+  std::optional<BoxPairs> boxes_;    // of ends; empty if not wanted
+  Lattice lattice_;                  // of ends, if there are boxes
 };
 
 }  // namespace

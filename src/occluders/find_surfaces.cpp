@@ -7,6 +7,7 @@
 
 #include "sightline/occluders/surface_set.h"
 #include "src/base/parallel_rows.h"
+#include "src/base/scratch_array.h"
 #include "src/occluders/surface_chains.h"
 #include "src/occluders/surface_gather.h"
 #include "src/occluders/surface_mesh.h"
@@ -156,9 +157,9 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
   }
   occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
   listByObject(mesh, gathered.part_of, scene.objects.size(), parallel_for, set);
-  gathered.part_of = {};
+  base::freeVector(gathered.part_of);
   occluders::findChains(mesh, gathered.cluster_of, parallel_for, set);
-  gathered.cluster_of = {};
+  base::freeVector(gathered.cluster_of);
   set.vertices = std::move(mesh.vertices);
   LargeVector<std::uint32_t> part_of(set.clusters.size()), patch_of(set.clusters.size());
   base::forEach(parallel_for, set.parts.size(), [&](std::uint32_t part) {

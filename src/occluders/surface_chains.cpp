@@ -7,6 +7,7 @@
 
 #include "src/base/parallel_rows.h"
 #include "src/base/part_store.h"
+#include "src/base/scratch_array.h"
 #include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
 
@@ -46,6 +47,10 @@ class EdgeCollector {
       : mesh_(mesh), cluster_of_(cluster_of), found_(found) {}
 
   void add(std::span<const Side> sides) {
+    if (sides.size() == 2 && sides[0].value() != sides[1].value() &&
+        cluster_of_[sides[0].triangle()] == cluster_of_[sides[1].triangle()]) {
+      return;  // as most edges of a mesh of many triangles: within a cluster
+    }
     sums_.clear();
     for (const Side side : sides) {
       const std::uint32_t cluster = cluster_of_[side.triangle()];
@@ -302,7 +307,7 @@ void findChains(SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, co
                           pair(boundary.uses[boundary.edges[i].first_use].cluster, boundary.edges[i]);
                         }
                       });
-  boundary.edges = {};
+  base::freeVector(boundary.edges);
   const base::Parts parts(set.clusters.size(), kClustersOfPart);
   base::PartStore store;
   std::vector<KeptChains> of_part(parts.count());

@@ -327,8 +327,8 @@ Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const Surfac
   });
 
   // Their memory is of use to what follows.
-  normals = {};
-  parts.place_of = {};
+  base::freeVector(normals);
+  base::freeVector(parts.place_of);
   mesh.forgetNeighbours();
 
   // Where each chunk begins, and one more.

@@ -12,6 +12,7 @@
 #include "sightline/base/parallel_for.h"
 #include "sightline/scene/scene.h"
 #include "src/base/rows.h"
+#include "src/base/scratch_array.h"
 
 namespace sightline::occluders {
 
@@ -56,9 +57,9 @@ struct SurfaceMesh {
   }
   // Frees what only forEachBeyond() and meetAtJunction() read, which are not to be called afterwards.
   void forgetNeighbours() {
-    LargeVector<std::uint32_t>().swap(beyond);
-    LargeVector<std::uint32_t>().swap(source);
-    LargeVector<std::array<std::uint32_t, 3>>().swap(given);
+    base::freeVector(beyond);
+    base::freeVector(source);
+    base::freeVector(given);
   }
   // Frees all but the vertices.
   void forgetTriangles() {

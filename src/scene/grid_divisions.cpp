@@ -45,6 +45,7 @@ struct Block {
   std::array<Reach, 3> along{};  // by axis
   float volume = 0.0f;
   bool done = false;  // it is divided or cannot be
+  std::uint32_t most_boxes = 1;  // that its divisions give, or as many as an object may have
 };
 
 // By slab along one axis: what there is along the two axes that follow it.
@@ -54,24 +55,22 @@ struct Filled {
   bool empty(std::uint32_t slab) const { return next[slab] == 0; }
 };
 
-// How far something reaches along two axes, and against them.
-struct Sides {
-  std::array<float, 4> least{kFar, kFar, kFar, kFar};
+// What there is in some slabs along one axis: slabs along the two axes that follow it.
+struct Contents {
+  std::uint32_t next = 0, after = 0;
 
-  HWY_INLINE void extend(const Sides& other) {
-    for (std::size_t i = 0; i < least.size(); ++i) {
-      least[i] = other.least[i] < least[i] ? other.least[i] : least[i];
-    }
-  }
-  HWY_INLINE float area() const {
-    return (kThickness - least[2] - least[0]) * (kThickness - least[3] - least[1]);
+  HWY_INLINE void add(const Filled& filled, std::uint32_t slab) {
+    next |= filled.next[slab];
+    after |= filled.after[slab];
   }
 };
 
 struct Division {
   float rank = kFar;  // the less, the better
   int axis = 0;
-  std::uint32_t plane = 0;  // it is below this slab
+  std::uint32_t plane = 0;  // it is below this slab, which is not empty
+  std::uint32_t lower = 0;  // the last slab below it that is not empty
+  Contents below, above;
 };
 
 HWY_INLINE std::uint32_t firstOf(std::uint32_t bits) {
@@ -81,13 +80,18 @@ HWY_INLINE std::uint32_t lastOf(std::uint32_t bits) {
   return static_cast<std::uint32_t>(std::bit_width(bits)) - 1;
 }
 
+// So many rows are transposed where there are so many slabs.
+HWY_INLINE std::uint32_t rowsOf(std::uint32_t slabs) {
+  return slabs > 16 ? 32 : 16;
+}
+
 // Rows become columns, of four sets of masks at once: bit i of the mask j is what bit j of the mask i was.
 // Exchanges ever smaller blocks of bits (H. S. Warren, Hacker's Delight, 2002, section 7-3). slabs: beyond so
 // many masks and bits all are 0. All of the blocks are exchanged, since on their way bits pass through masks
 // beyond.
 HWY_INLINE void transpose(std::uint32_t (&sets)[kMaxSlabs][4], std::uint32_t slabs) {
   static_assert(kMaxSlabs == 32);
-  const std::uint32_t rows = slabs > 16 ? 32 : 16;
+  const std::uint32_t rows = rowsOf(slabs);
   std::uint32_t mask = slabs > 16 ? 0x0000ffffu : 0x00ff00ffu;
   for (std::uint32_t size = rows / 2; size != 0; size /= 2, mask ^= mask << size) {
     for (std::uint32_t row = 0; row < rows; row = (row + size + 1) & ~size) {
@@ -126,11 +130,16 @@ class Divider {
     tree_.boxes = 1;
     tree_.cost = 0.0f;
     project(whole);
-    if (std::all_of(filled_[0].next.begin(), filled_[0].next.end(),
-                    [](std::uint32_t slabs) HWY_ATTR { return slabs == 0; })) {
+    Contents all;
+    std::uint32_t own = 0;  // slabs along x that are not empty
+    for (std::uint32_t slab = 0; slab <= whole.along[0].last; ++slab) {
+      all.add(filled_[0], slab);
+      own |= filled_[0].empty(slab) ? 0 : 1u << slab;
+    }
+    if (own == 0) {
       return;
     }
-    blocks_[0] = partOf(whole, 0);
+    blocks_[0] = partOf(whole, 0, firstOf(own), lastOf(own), all);
     const auto price = static_cast<float>(min_saving * blocks_[0].volume);
     // The largest one first, unless it cannot save as much as a box costs.
     for (std::uint32_t divided = 0; divided < max_divided; ++divided) {
@@ -164,12 +173,23 @@ class Divider {
   // Finds what fills the block's slabs.
   HWY_INLINE void project(const Block& block) {
     const auto& [along_x, along_y, along_z] = block.along;
-    alignas(64) SlabMasks within{};  // by slab along y
+    std::uint32_t slabs = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      slabs = std::max(slabs, grid_.slabs(axis).count);
+    }
+    alignas(64) SlabMasks within;  // by slab along y
+    alignas(64) SlabMasks z_of_y;
+    // By slab: along y of x, along z of x, along z of y.
+    alignas(64) std::uint32_t sets[kMaxSlabs][4];
+    for (std::size_t i = 0; i < slabs; i += hn::Lanes(kMasks)) {
+      hn::Store(hn::Zero(kMasks), kMasks, &within[i]);
+      hn::Store(hn::Zero(kMasks), kMasks, &z_of_y[i]);
+    }
+    for (std::size_t i = 0; i < 4 * rowsOf(slabs); i += hn::Lanes(kMasks)) {
+      hn::Store(hn::Zero(kMasks), kMasks, &sets[0][0] + i);
+    }
     std::fill(within.begin() + along_y.first, within.begin() + along_y.last + 1,
               (2u << along_z.last) - (1u << along_z.first));
-    // By slab: along y of x, along z of x, along z of y.
-    alignas(64) std::uint32_t sets[kMaxSlabs][4] = {};
-    alignas(64) SlabMasks z_of_y{};
     for (std::uint32_t x = along_x.first; x <= along_x.last; ++x) {
       const SlabMasks& marked = grid_.marked(x);
       MasksV all = hn::Zero(kMasks);
@@ -189,10 +209,6 @@ class Divider {
         }
       }
       sets[x][1] = lanes[0];
-    }
-    std::uint32_t slabs = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      slabs = std::max(slabs, grid_.slabs(axis).count);
     }
     for (std::uint32_t i = 0; i < slabs; ++i) {
       sets[i][2] = z_of_y[i];
@@ -214,23 +230,21 @@ class Divider {
     const Filled& filled = filled_[axis];
     const Ends& next = ends_[axis < 2 ? axis + 1 : 0];
     const Ends& after = ends_[axis > 0 ? axis - 1 : 2];
-    std::array<Sides, kMaxSlabs> of;    // by slab that is not empty
-    std::array<Sides, kMaxSlabs> from;  // by slab that is not empty: around it and all above it
-    Sides around;
+    const auto areaOf = [&](const Contents& in) HWY_ATTR {
+      return (kThickness + next.high[lastOf(in.next)] - next.low[firstOf(in.next)]) *
+             (kThickness + after.high[lastOf(in.after)] - after.low[firstOf(in.after)]);
+    };
+    std::array<Contents, kMaxSlabs> from;  // by slab: what is in it and in all above it
+    Contents above, below;
     for (std::uint32_t slab = whole.last + 1; slab-- > whole.first;) {
-      const std::uint32_t in_next = filled.next[slab], in_after = filled.after[slab];
-      if (in_next != 0) {
-        of[slab] = {{next.low[firstOf(in_next)], after.low[firstOf(in_after)], -next.high[lastOf(in_next)],
-                     -after.high[lastOf(in_after)]}};
-        around.extend(of[slab]);
-        from[slab] = around;
-      }
+      above.add(filled, slab);
+      from[slab] = above;
     }
     const std::array<float, kMaxSlabs>& planes = grid_.slabs(axis).low;
     const float centre = 0.5f * (whole.low + whole.high);
     const float off_centre = 2.0f * off_centre_ * block.volume / (whole.high - whole.low);
     std::uint32_t lower = whole.first;  // the last slab below the plane that is not empty
-    around = of[lower];
+    below.add(filled, lower);
     for (std::uint32_t plane = whole.first + 1; plane <= whole.last; ++plane) {
       if (filled.empty(plane)) {
         continue;
@@ -238,37 +252,35 @@ class Divider {
       const bool gap = lower + 1 != plane;
       const float end = gap ? middles_[axis][lower] : planes[plane];
       const float begin = gap ? middles_[axis][plane] : planes[plane];
-      const float rank = around.area() * (end - whole.low + kThickness) +
-                         from[plane].area() * (whole.high - begin + kThickness) +
+      const float rank = areaOf(below) * (end - whole.low + kThickness) +
+                         areaOf(from[plane]) * (whole.high - begin + kThickness) +
                          off_centre * std::abs(planes[plane] - centre);
       if (rank < best.rank) {
-        best = {rank, axis, plane};
+        best = {rank, axis, plane, lower, below, from[plane]};
       }
-      around.extend(of[plane]);
+      below.add(filled, plane);
       lower = plane;
     }
   }
 
-  // The block as far as it is not empty. filled_[axis]: what is in its slabs along this axis, and in others.
-  HWY_INLINE Block partOf(const Block& block, int axis) const {
+  // The block as far as it is not empty: from one slab along an axis to another one, and along the other axes
+  // as far as there are contents.
+  HWY_INLINE Block partOf(const Block& block, int axis, std::uint32_t first, std::uint32_t last,
+                          const Contents& in) const {
     const int next = axis < 2 ? axis + 1 : 0, after = 3 - axis - next;
-    std::uint32_t own = 0, in_next = 0, in_after = 0;
-    for (std::uint32_t slab = block.along[axis].first; slab <= block.along[axis].last; ++slab) {
-      own |= filled_[axis].empty(slab) ? 0 : 1u << slab;
-      in_next |= filled_[axis].next[slab];
-      in_after |= filled_[axis].after[slab];
-    }
     Block part;
     part.volume = 1.0f;
-    for (const auto& [along, bits] : {std::pair(axis, own), {next, in_next}, {after, in_after}}) {
+    for (const auto& [along, low, high] : {std::tuple(axis, first, last),
+                                           {next, firstOf(in.next), lastOf(in.next)},
+                                           {after, firstOf(in.after), lastOf(in.after)}}) {
       Reach reach = block.along[along];
-      if (firstOf(bits) > reach.first) {
-        reach.first = firstOf(bits);
-        reach.low = middles_[along][reach.first];
+      if (low > reach.first) {
+        reach.first = low;
+        reach.low = middles_[along][low];
       }
-      if (lastOf(bits) < reach.last) {
-        reach.last = lastOf(bits);
-        reach.high = middles_[along][reach.last];
+      if (high < reach.last) {
+        reach.last = high;
+        reach.high = middles_[along][high];
       }
       part.along[along] = reach;
       part.volume *= reach.high - reach.low + kThickness;
@@ -302,10 +314,14 @@ class Divider {
         std::pair(best.plane - 1, slabs.low[best.plane]);
     std::tie(upper.along[best.axis].first, upper.along[best.axis].low) =
         std::pair(best.plane, slabs.low[best.plane]);
-    for (const Block* half : {&lower, &upper}) {
-      tree_.nodes[tree_.node_count].first_half = 0;
-      blocks_[tree_.node_count++] = partOf(*half, best.axis);
-    }
+    const Reach& whole = block.along[best.axis];
+    addHalf(partOf(lower, best.axis, whole.first, best.lower, best.below));
+    addHalf(partOf(upper, best.axis, best.plane, whole.last, best.above));
+  }
+
+  HWY_INLINE void addHalf(const Block& half) {
+    tree_.nodes[tree_.node_count].first_half = 0;
+    blocks_[tree_.node_count++] = half;
   }
 
   // Precondition: that of the halves has been found.
@@ -313,12 +329,21 @@ class Divider {
     DivisionTree::Node& node = tree_.nodes[n];
     node.min_volume.fill(blocks_[n].volume);
     node.in_first.fill(0);
+    blocks_[n].most_boxes = 1;
+    if (node.first_half == 0) {
+      return;
+    }
     const auto& first_half = tree_.nodes[node.first_half];
     const auto& second_half = tree_.nodes[node.first_half + 1];
-    for (std::uint32_t count = 2; node.first_half != 0 && count <= max_boxes_; ++count) {
+    const std::uint32_t most_in_first = blocks_[node.first_half].most_boxes;
+    const std::uint32_t most_in_second = blocks_[node.first_half + 1].most_boxes;
+    blocks_[n].most_boxes = std::min(most_in_first + most_in_second, max_boxes_);
+    for (std::uint32_t count = 2; count <= max_boxes_; ++count) {
       node.min_volume[count] = node.min_volume[count - 1];
       node.in_first[count] = node.in_first[count - 1];
-      for (std::uint32_t first = 1; first < count; ++first) {
+      // More boxes than a half can have would save nothing in it.
+      const std::uint32_t least = count > most_in_second ? count - most_in_second : 1;
+      for (std::uint32_t first = least; first <= std::min(most_in_first, count - 1); ++first) {
         const float sum = first_half.min_volume[first] + second_half.min_volume[count - first];
         if (sum < node.min_volume[count]) {
           node.min_volume[count] = sum;
