@@ -20,7 +20,7 @@ namespace sightline::pvs {
 
 // Version of the bake method; increase it whenever the same input would give other cells, or the same
 // question another answer.
-inline constexpr std::uint32_t kBakeVersion = 11;
+inline constexpr std::uint32_t kBakeVersion = 12;
 
 struct BakeScene {
   // settings: must be valid, with at least one box of viewers.
