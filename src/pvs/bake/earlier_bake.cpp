@@ -116,7 +116,7 @@ std::vector<PanelMark> panelMarks(const BakeScene& scene, std::span<const Object
     const PanelRank& rank = panels.ranks[i];
     hash.add(rank.content);
     // The order in which panels are followed decides which objects are left out of a question.
-    hash.add(scene.thorough() ? std::uint64_t{rank.steps} : 0);
+    hash.add(isThorough(scene.settings) ? std::uint64_t{rank.steps} : 0);
     own.push_back(hash.value());
   }
   std::vector<PanelMark> marks;
