@@ -9,6 +9,8 @@
 #include "oracle/proof_mesh.h"
 #include "oracle/region_hull.h"
 #include "oracle/shaft.h"
+#include "oracle/target_pieces.h"
+#include "src/math/longest_axis.h"
 
 namespace sightline {
 namespace {
@@ -23,10 +25,9 @@ constexpr std::size_t kMostLeftOut = 24;  // objects, when a surface is followed
 // One claim.
 class RegionProof::Attempt {
  public:
-  Attempt(const ProofMesh& mesh, const RegionClaim& claim)
-      : mesh_(mesh), claim_(claim), eyes_(hullOf(claim.region)) {
-    const Box& bounds = mesh.scene.objects[claim.target.value].bounds;
-    target_ = {Vec3d(bounds.min), Vec3d(bounds.max)};
+  // target: a box around what is to be hidden of the claim's object.
+  Attempt(const ProofMesh& mesh, const RegionClaim& claim, const DoubleBox& target)
+      : mesh_(mesh), claim_(claim), eyes_(hullOf(claim.region)), target_(target) {
     if (eyes_.empty()) {
       return;
     }
@@ -281,7 +282,7 @@ class RegionProof::Attempt {
   const RegionClaim& claim_;
   std::vector<Vec3d> eyes_;
   std::array<Vec3d, kSightLines> starts_{}, ends_{};
-  DoubleBox target_, around_;
+  DoubleBox target_, around_{};
   std::vector<std::uint32_t> candidates_;
 };
 
@@ -294,12 +295,51 @@ bool RegionProof::isEmpty(const EyeRegion& region) {
   return hullOf(region).empty();
 }
 
+DoubleBox RegionProof::boundsOf(ObjectId object) const {
+  const Box& bounds = mesh_->scene.objects[object.value].bounds;
+  return {Vec3d(bounds.min), Vec3d(bounds.max)};
+}
+
 bool RegionProof::proves(const RegionClaim& claim) const {
-  return Attempt(*mesh_, claim).run();
+  return Attempt(*mesh_, claim, boundsOf(claim.target)).run();
+}
+
+bool RegionProof::provesInParts(const RegionClaim& claim, std::uint32_t divisions) const {
+  return proves(claim) || provesParts(claim, TargetPieces(mesh_->scene, claim.target), divisions);
+}
+
+// Halves whatever is larger, the region or the box around the pieces.
+bool RegionProof::provesParts(const RegionClaim& claim, const TargetPieces& target,
+                              std::uint32_t divisions) const {
+  if (target.empty()) {
+    return true;
+  }
+  const DoubleBox box = target.bounds();
+  if (Attempt(*mesh_, claim, box).run()) {
+    return true;
+  }
+  if (divisions == 0) {
+    return false;
+  }
+  const Vec3d of_region = claim.region.max - claim.region.min, of_target = box.max - box.min;
+  const bool halve_region = maxComponent(of_region) > maxComponent(of_target);
+  const int axis = math::longestAxis(halve_region ? of_region : of_target);
+  for (const bool high : {false, true}) {
+    RegionClaim half = claim;
+    if (halve_region) {
+      const double middle = 0.5 * (claim.region.min[axis] + claim.region.max[axis]);
+      (high ? half.region.min : half.region.max)[axis] = middle;
+    }
+    const double middle = 0.5 * (box.min[axis] + box.max[axis]);
+    if (!provesParts(half, halve_region ? target : target.half(axis, middle, high), divisions - 1)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool RegionProof::refutesObject(const RegionClaim& claim) const {
-  return Attempt(*mesh_, claim).refuted();
+  return Attempt(*mesh_, claim, boundsOf(claim.target)).refuted();
 }
 
 bool RegionProof::misses(const Vec3d& from, const Vec3d& to, ObjectId object) const {

@@ -15,6 +15,9 @@
 //              hull of the region and the box. If no triangle of it that is in the shaft meets the region or
 //              the box, all segments cross it as often as one does, fronts counted 1 and backs -1.
 //
+// What hides one half of a region or of a target may be something else than what hides the other half. So a
+// claim may be proved in parts: of boxes around pieces of the target's triangles, from pieces of the region.
+//
 // All numbers are doubles that carry a bound of their rounding. What is in doubt proves nothing, and neither
 // does a region so far away that products overflow.
 
@@ -29,6 +32,8 @@
 namespace sightline {
 
 struct ProofMesh;
+struct DoubleBox;
+class TargetPieces;
 
 struct RegionClaim {
   EyeRegion region;
@@ -50,6 +55,9 @@ class RegionProof {
   static bool isEmpty(const EyeRegion& region);
   // True only if no point of the target's box is seen from any eye of the region.
   bool proves(const RegionClaim& claim) const;
+  // True only if no point of the target's triangles is seen from any eye of the region: proved of the whole
+  // target, or of each half of the region or of the triangles, halved up to so many times.
+  bool provesInParts(const RegionClaim& claim, std::uint32_t divisions) const;
   // True if some segment from the region to the target's box surely meets no triangle of claim.by: then that
   // object alone does not hide the box.
   bool refutesObject(const RegionClaim& claim) const;
@@ -58,6 +66,8 @@ class RegionProof {
 
  private:
   class Attempt;
+  DoubleBox boundsOf(ObjectId object) const;
+  bool provesParts(const RegionClaim& claim, const TargetPieces& target, std::uint32_t divisions) const;
   std::unique_ptr<const ProofMesh> mesh_;
 };
 

@@ -1,8 +1,17 @@
 #pragma once
 
+#include <cstddef>
+
 #include "sightline/scene/camera.h"
 
 namespace sightline::culling {
+
+// Whether so many of the objects that are kept are new, compared with the last frame, that the view changes
+// fast: what the last frame kept is then not enough to hide what is behind the new ones.
+constexpr bool changesFast(std::size_t new_count, std::size_t kept_count) {
+  constexpr std::size_t kCalm = 16;  // one of so many may be new
+  return new_count * kCalm > kept_count;
+}
 
 // Keeps the view of the last frame, to detect jumps of the camera.
 class LastView {

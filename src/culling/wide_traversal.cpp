@@ -285,7 +285,7 @@ void WideTraversal::Task::testBuffer(std::span<const Child> children, std::size_
     for (const Child& child : children) {
       found_.retest_delay.push_back(retest_delay_[child.index]);
     }
-    hints.seen = found_.retest_delay;
+    hints.retest_delay = found_.retest_delay;
   }
   hints.plain_from = plain_from;
   hints.not_hidden = not_hidden;

@@ -444,7 +444,7 @@ void testAll(std::span<const DepthLevel> levels, const OutlineView& view, std::s
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
-    if (!hints.seen.empty() && hints.seen[i] != 0) {
+    if (!hints.retest_delay.empty() && hints.retest_delay[i] != 0) {
       answers[i] =
           image.answer(image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial);
       continue;

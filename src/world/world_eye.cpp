@@ -17,9 +17,6 @@ constexpr double kMinGain = 0.3;  // pixels that must become nearer for each uni
 constexpr std::uint32_t kLongestDelay = 15;
 // A join is not drawn either where rounding moves a member by more than this part of its distance.
 constexpr double kDepthRounding = 0x1p-21;
-// Where more than one of so many instances that were kept is new, the view changes fast, and what the last
-// frame kept is not enough to hide what is behind the new ones.
-constexpr std::size_t kCalm = 16;
 
 double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -103,7 +100,7 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
   if (settings_.occlusion && !jumped) {
     listed_.clear();
     found_.listWithout(last_set, listed_);
-    if (listed_.size() * kCalm > last.size()) {
+    if (culling::changesFast(listed_.size(), last.size())) {
       draw(data, view, listed_, ViewStep::kSame);
       pyramid_.finish();
       test(data, false);

@@ -43,7 +43,41 @@ struct Setting {
   bool proved(double near_distance = 0.0, ObjectId by = {}) const {
     return RegionProof(scene.view()).proves({region, target, by, near_distance});
   }
+  bool provedInParts(std::uint32_t divisions, double near_distance = 0.0) const {
+    return RegionProof(scene.view()).provesInParts({region, target, {}, near_distance}, divisions);
+  }
 };
+
+// Neither of two walls that do not touch hides a target with two ends, each of which one of them hides.
+Setting twoEndsBehindTwoWalls(float gap) {
+  Setting s;
+  addWall(s.scene, s.two_sided, -1, -9, -gap, -9, 9);
+  addWall(s.scene, s.two_sided, -1, gap, 9, -9, 9);
+  const std::array<Vec3f, 6> ends{
+      {{-5, 0, -2}, {-4, 0, -2}, {-4, 1, -2}, {4, 0, -2}, {5, 0, -2}, {5, 1, -2}}};
+  s.target = addTriangles(s.scene, s.opaque, ends);
+  return s;
+}
+
+TEST(RegionProof, ProvesInPartsWhatDifferentThingsHide) {
+  const Setting s = twoEndsBehindTwoWalls(0.5f);
+  EXPECT_FALSE(s.proved());
+  EXPECT_FALSE(s.provedInParts(0));
+  EXPECT_TRUE(s.provedInParts(1));
+  EXPECT_FALSE(s.provedInParts(1, 1.1)) << "a near plane may clip the walls";
+  EXPECT_FALSE(twoEndsBehindTwoWalls(2.9f).provedInParts(8)) << "eyes look through the gap at the ends";
+}
+
+TEST(RegionProof, ProvesInPartsOfARegionWhatDifferentThingsHide) {
+  // From each half of the region, one of two walls hides the target, and from all of it neither does.
+  Setting s;
+  s.region = {{-4, -1, 0}, {4, 1, 1}, {}};
+  addWall(s.scene, s.two_sided, -1, -9, 0.25f, -9, 9);
+  addWall(s.scene, s.two_sided, -2, -0.25f, 9, -9, 9);
+  s.target = addWall(s.scene, s.opaque, -40, -0.5f, 0.5f, -1, 1);
+  EXPECT_FALSE(s.proved());
+  EXPECT_TRUE(s.provedInParts(4));
+}
 
 TEST(RegionProof, ProvesWhatOneWallHides) {
   Setting s;
@@ -245,8 +279,9 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
       s.region.sides = {randomSide(random)};
     }
     const EyePlaces eyes(s.region);
-    const bool proved = s.proved();
-    proofs += proved ? 1 : 0;
+    const bool whole = s.proved(), proved = s.provedInParts(6);
+    EXPECT_LE(whole, proved) << "seed " << seed;
+    proofs += whole ? 1 : 0;
     const Box& box = s.scene.objects[s.target.value].bounds;
     for (int line = 0; line < kLines; ++line) {
       const Vec3d to{random.in(box.min.x, box.max.x), random.in(box.min.y, box.max.y),
@@ -260,6 +295,45 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
     }
   }
   EXPECT_GT(proofs, 20);
+  EXPECT_GT(seen, 100);
+}
+
+// Walls beside each other at several distances overlap or leave gaps, as seen from the region.
+TEST(RegionProof, NeverProvesInPartsWhatALineOfSightSees) {
+  constexpr std::uint64_t kScenes = 1000;
+  constexpr int kLines = 400;
+  int proofs_in_parts = 0, seen = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    SplitMix random{seed};
+    const auto at = [&](double low, double high) { return static_cast<float>(random.in(low, high)); };
+    Setting s;
+    float left = -30;
+    for (int i = 0; i < 3; ++i) {
+      const float right = i == 2 ? 30.0f : at(-3, 3), z = -1.0f - 0.5f * static_cast<float>(random.below(3));
+      addWall(s.scene, s.two_sided, z, std::min(left, right) - at(-0.6, 0.8),
+              std::max(left, right) + at(-0.6, 0.8), -30, 30);
+      left = right;
+    }
+    const float z = at(-12, -5), x = at(-4, 0);
+    s.target = addClosedBox(s.scene, s.opaque, {x, at(-4, 0), z - 1}, {x + at(0.5, 6), at(0.5, 3), z});
+    if (random.below(4) == 0) {
+      s.region.sides = {randomSide(random)};
+    }
+    const bool proved = s.provedInParts(6);
+    proofs_in_parts += proved && !s.proved() ? 1 : 0;
+    const EyePlaces eyes(s.region);
+    const Box& box = s.scene.objects[s.target.value].bounds;
+    for (int line = 0; line < kLines; ++line) {
+      const Vec3d to{random.in(box.min.x, box.max.x), random.in(box.min.y, box.max.y),
+                     random.in(box.min.z, box.max.z)};
+      if (clear(s.scene, s.target, eyes.point(random), to)) {
+        seen += 1;
+        ASSERT_FALSE(proved) << "seed " << seed;
+        break;
+      }
+    }
+  }
+  EXPECT_GT(proofs_in_parts, 20);
   EXPECT_GT(seen, 100);
 }
 

@@ -344,13 +344,16 @@ class RandomCells {
     }
     return all;
   }
+  // Object 0 is always seen: a set of nothing is like no other one.
   void addSet(pvs::Runs& seen, pvs::DoorRuns& doors) {
-    seen = some({{0, objects_}});
+    const pvs::Runs others = some({{1, objects_}});
     for (std::uint32_t group = 0; group < 2; ++group) {
-      if (pvs::Runs hidden = some(seen); !hidden.empty() && random_() % 4 != 0) {
+      if (pvs::Runs hidden = some(others); !hidden.empty() && random_() % 4 != 0) {
         doors.push_back({group, std::move(hidden)});
       }
     }
+    const pvs::ObjectRun first{0, 1};
+    pvs::unite(others, std::span(&first, 1), seen);
   }
 
   std::uint32_t objects_;
@@ -414,6 +417,58 @@ TEST(Doors, OfAMergedCellHideWhatTheyHideFromEachOfItsChildrenThatSeesIt) {
   }
   EXPECT_GT(hidden, 0u);
   EXPECT_GT(kept, hidden);
+}
+
+// Viewers behind a closed door would see what it hides from them, if their cell became one with those beside
+// the door.
+TEST(Doors, KeepCellsApartFromWhichTheyHideDifferentThings) {
+  const DoorScene rooms = test::randomRooms(1);
+  BakeSettings settings = settingsFor(BakeOcclusion::kConvex, alone(rooms.doors));
+  settings.triangle_budget = 1;
+  settings.merge_tolerance = 0.25;
+  settings.viewers = {sceneBounds(rooms.scene.view())};
+  const pvs::BakeScene scene(rooms.scene.view(), test::allOccluders(rooms.scene), settings, serialFor);
+  const auto objects = static_cast<std::uint32_t>(rooms.scene.objects.size());
+  const pvs::DoorRuns half{{1, {{0, objects / 2}}}};
+  const auto becomeOne = [&](int with_doors, bool by_sides) {
+    pvs::BakedCell cell;
+    for (int i = 0; i < 8; ++i) {
+      pvs::BakedCell& child = cell.children.emplace_back();
+      child.sets.whole = {{0, objects}};
+      pvs::DoorRuns* of_child = &child.sets.whole_doors;
+      if (by_sides) {
+        child.sets.plane = CellPlane{.normal = {1, 0, 0}, .front = 1.0, .back = 0.0};
+        child.sets.front = child.sets.whole;
+        child.sets.back = {{0, 1}};
+        of_child = &child.sets.front_doors;
+      }
+      if (i < with_doors) {
+        *of_child = half;
+      }
+    }
+    pvs::mergeChildren(scene, cell);
+    return cell.leaf();
+  };
+  for (const bool by_sides : {false, true}) {
+    EXPECT_TRUE(becomeOne(0, by_sides));
+    EXPECT_FALSE(becomeOne(1, by_sides));
+    EXPECT_FALSE(becomeOne(7, by_sides));
+    EXPECT_TRUE(becomeOne(8, by_sides));
+  }
+}
+
+TEST(Doors, AreTheSameWithAndWithoutSamples) {
+  RoomBuilder builder(3);
+  builder.addShutter(0);
+  builder.addShutter(1);
+  builder.addCrate(1, 3, 2.5f);
+  builder.addCrate(2, 3, 2.5f);
+  const DoorScene rooms = builder.build();
+  BakeSettings settings = settingsFor(BakeOcclusion::kConvex, alone(rooms.doors));
+  const BakedVisibility with = test::baked(rooms.scene, settings);
+  EXPECT_FALSE(with.doors.hidden.empty());
+  settings.sample_bytes = 0;
+  EXPECT_EQ(sight_test::bytesOf(test::baked(rooms.scene, settings)), sight_test::bytesOf(with));
 }
 
 // A door may be named more than once, in any order.

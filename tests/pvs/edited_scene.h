@@ -237,4 +237,19 @@ inline EditedScene roomScene(std::uint32_t seed, int rooms = 3) {
   return EditedScene::of(sceneOf(solids));
 }
 
+// The scene with holes: half of its objects lack one of their triangles. Where a surface ends at a hole, or
+// is too near, depends on the way by which it is followed.
+inline EditedScene torn(EditedScene scene, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  for (Piece& piece : scene.pieces) {
+    const auto triangles = static_cast<std::ptrdiff_t>(piece.corners.size() / 3);
+    if (random() % 2 == 0) {
+      const auto first =
+          piece.corners.begin() + 3 * (static_cast<std::ptrdiff_t>(random() % 1000) % triangles);
+      piece.corners.erase(first, first + 3);
+    }
+  }
+  return scene;
+}
+
 }  // namespace sightline::test

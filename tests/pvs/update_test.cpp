@@ -14,6 +14,7 @@ namespace {
 using test::EditedScene;
 using test::RandomEdits;
 using test::roomScene;
+using test::torn;
 
 // The file of a bake, and what it leaves for the next one.
 struct Made {
@@ -147,6 +148,26 @@ TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
                 .narrowings = seed % 2},
                seed, editsOf(5), totals);
   }
+  expectReuse(totals);
+}
+
+// Which objects are left out of a question that is asked again must not depend on the numbers of panels,
+// which one more object changes all over.
+TEST(Update, GivesTheBytesOfAFullBakeWhereNarrowingOrDividingIsAskedFor) {
+  Totals totals;
+  const auto judge = [&](std::uint32_t seed, std::uint32_t narrowings, std::uint32_t divisions) {
+    judgeEdits(torn(roomScene(seed, 2), seed),
+               {.occlusion = BakeOcclusion::kFused,
+                .triangle_budget = 120,
+                .max_depth = 2,
+                .near_distance = 0.05,
+                .divisions = divisions,
+                .narrowings = narrowings},
+               seed, editsOf(5), totals);
+  };
+  judge(37, 0, 1);
+  judge(38, 1, 2);
+  judge(39, 1, 0);
   expectReuse(totals);
 }
 

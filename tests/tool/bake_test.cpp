@@ -165,11 +165,30 @@ TEST(Bake, FitsABudgetInBytesOrSaysThatItCannot) {
   const std::string settings = info["settings"]["all"].dump();
   EXPECT_LE(info["bytes"].get<std::size_t>(), 140000 + settings.size() + 64);
   EXPECT_GT(info["cells"], 1);
-  const Outcome too_small =
-      runTool(bakeArguments(kShip, folder.file("none.sight"), {"--byte-budget", "1000"}));
+}
+
+// All parts are there before it is known that they do not fit: they must not be lost.
+TEST(Bake, ABudgetInBytesThatIsTooSmallLeavesThePartsForALargerOne) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.sight"), witnesses = folder.file("F.witnesses");
+  const auto withBudget = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--witnesses", witnesses, "--answers"});
+    return runTool(bakeArguments(kShip, file, more));
+  };
+  const Outcome too_small = withBudget({"--byte-budget", "1000"});
   EXPECT_EQ(too_small.code, 2);
   EXPECT_EQ(ownLines(too_small.err), 1) << too_small.err;
-  EXPECT_NE(too_small.err.find("byte budget of 1000"), std::string::npos) << too_small.err;
+  for (const std::string& part : {std::string("byte budget of 1000; give a larger one"),
+                                  "kept in " + file + ".parts", std::string("--resume")}) {
+    EXPECT_NE(too_small.err.find(part), std::string::npos) << too_small.err;
+  }
+  for (const std::string& other : {file, file + ".answers", witnesses}) {
+    EXPECT_FALSE(std::filesystem::exists(other)) << other;
+  }
+  const Outcome larger = withBudget({"--byte-budget", "140000", "--resume", "--json", "-"});
+  ASSERT_EQ(larger.code, 0) << larger.err;
+  EXPECT_EQ(parse(larger.out)["parts_before"], parse(larger.out)["parts"]);
+  EXPECT_FALSE(std::filesystem::exists(file + ".parts"));
 }
 
 TEST(Bake, ChoosesABudgetAndSaysIt) {

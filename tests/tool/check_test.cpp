@@ -187,13 +187,17 @@ TEST_F(Check, WitnessesOfASideAreOfCellsThatWereNotDivided) {
 
 TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
   use("fused");
-  const Outcome outcome = check({"--json", "-"});
+  const Outcome outcome = check({"--json", "-", "--divisions", "4"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const json report = parse(outcome.out);
   EXPECT_EQ(report["kinds"]["without"]["claims"], 0);
   EXPECT_GT(report["kinds"]["surfaces"]["proved"], 0);
   EXPECT_GT(report["survived"], 0);
-  EXPECT_EQ(check({"--json", "-", "--threads", "3"}).out, outcome.out) << "rays depend on the threads";
+  EXPECT_EQ(check({"--json", "-", "--divisions", "4", "--threads", "3"}).out, outcome.out)
+      << "rays depend on the threads";
+  const json whole = parse(check({"--json", "-", "--divisions", "0"}).out);
+  EXPECT_EQ(whole["claims"], report["claims"]);
+  EXPECT_LT(whole["proved"], report["proved"]) << "nothing is proved in parts";
 }
 
 TEST_F(Check, ContradictsAForgedClaim) {

@@ -2,8 +2,8 @@
 
 // Threads belong to the caller. A function of the library that can use several takes a ParallelFor.
 //
-// Contract: run(count, body) calls body(begin, end) on disjoint ranges that cover [0, count), in any order,
-// on any threads, and returns when all calls have returned. Results never depend on how the range was cut.
+// Contract: run(count, body) calls body(begin, end) on disjoint ranges, some maybe empty, that cover
+// [0, count), in any order, on any threads, and returns when all have. No result depends on how it was cut.
 
 #include <cstdint>
 #include <functional>

@@ -40,9 +40,9 @@ struct BufferPixel {
 
 // What a caller knows of boxes that are tested view after view.
 struct BoxHints {
-  // Empty, or one value for each box. Other than 0: the box was not hidden a short while ago and is not
-  // tested again; it is kPartial unless it is wholly outside the view.
-  std::span<const std::uint8_t> seen{};
+  // Empty, or one value for each box. Other than 0: the box was not hidden a short while ago and is not to be
+  // tested again yet; it is kPartial unless it is wholly outside the view.
+  std::span<const std::uint8_t> retest_delay{};
   // For boxes from this index on, kVisible and kPartial need not be told apart.
   std::size_t plain_from = static_cast<std::size_t>(-1);
   // Empty, or one value for each box. Other than 0: the box is surely not hidden, as
@@ -55,7 +55,7 @@ struct BoxHints {
   // Returns the hints for `count` boxes from the index `first` on.
   BoxHints from(std::size_t first, std::size_t count) const {
     BoxHints part = *this;
-    part.seen = seen.empty() ? seen : seen.subspan(first, count);
+    part.retest_delay = retest_delay.empty() ? retest_delay : retest_delay.subspan(first, count);
     part.plain_from = plain_from > first ? plain_from - first : 0;
     part.not_hidden = not_hidden.empty() ? not_hidden : not_hidden.subspan(first, count);
     part.seen_points = seen_points.empty() ? seen_points : seen_points.subspan(first, count);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sightline/culling/culling_method.h"
+#include "src/culling/last_view.h"
 #include "src/culling/nearest_objects.h"
 #include "src/culling/timed_budget.h"
 #include "src/culling/usual_work.h"
@@ -91,7 +92,7 @@ class SurfaceDrawer {
     stats = found;
   }
   // Whether many of the objects that the buffer shows are new in this frame.
-  bool changesFast() const { return areMany(news_, last_kept_); }
+  bool changesFast() const { return culling::changesFast(news_.size(), last_kept_.size()); }
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
     usual_work_.frame(work_);
@@ -132,14 +133,8 @@ class SurfaceDrawer {
  private:
   // So many objects are looked at after a jump before anything is hidden.
   static constexpr std::size_t kNearest = 512;
-  // Where more than one of so many objects is new, the view changes fast, and the surfaces of what the last
-  // frame kept are not enough.
-  static constexpr std::size_t kCalm = 16;
   // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
   static constexpr std::size_t kStill = 2;
-  static bool areMany(std::span<const ObjectId> news, std::span<const ObjectId> objects) {
-    return news.size() * kCalm > objects.size();
-  }
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
@@ -163,7 +158,7 @@ class SurfaceDrawer {
       return true;
     }
     findNews(not_hidden, last_kept_);
-    if (!areMany(news_, not_hidden)) {
+    if (!culling::changesFast(news_.size(), not_hidden.size())) {
       return false;
     }
     // What comes into view is not counted in the budget, but for one of time.

@@ -3,13 +3,13 @@
 #include "src/pvs/bake/answers.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "src/base/byte_stream.h"
+#include "src/pvs/bake/number_hash.h"
 #include "src/pvs/bake/packed_bytes.h"
 #include "src/pvs/bake/run_code.h"
-#include "src/pvs/format/checksum.h"
 
 namespace sightline::pvs {
 namespace {
@@ -117,25 +117,25 @@ CoarseBox coarse(const Box& box, const Box& frame) {
 }
 
 Box boxOf(const CoarseBox& coarse, const Box& frame) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
     const double first = frame.min[axis], step = (double{frame.max[axis]} - first) / 255.0;
     const auto i = static_cast<std::size_t>(axis);
-    box.min[axis] = static_cast<float>(first + step * coarse[i]);
-    box.max[axis] = static_cast<float>(first + step * coarse[i + 3]);
+    box.min[axis] = coarse[i] == 0 ? -kInfinity : static_cast<float>(first + step * coarse[i]);
+    box.max[axis] = coarse[i + 3] == 255 ? kInfinity : static_cast<float>(first + step * coarse[i + 3]);
   }
   return box;
 }
 
 std::uint64_t questionOf(std::span<const Vec3d> points, std::span<const double> numbers) {
-  Checksum hash;
-  const auto add = [&hash](double number) { hash.addValue(std::bit_cast<std::uint64_t>(number + 0.0)); };
+  NumberHash hash;
   for (const Vec3d& point : points) {
-    add(point.x);
-    add(point.y);
-    add(point.z);
+    hash.add(point);
   }
-  std::for_each(numbers.begin(), numbers.end(), add);
+  for (const double number : numbers) {
+    hash.add(number);
+  }
   return hash.value();
 }
 

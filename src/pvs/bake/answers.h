@@ -23,8 +23,9 @@ enum class AnswerKind : std::uint8_t {
 };
 inline constexpr std::uint32_t kAnswerKinds = 3;
 
-// A box that is not smaller than another one, in 255ths of a frame around it: the lower and the upper ends
-// along the axes. Empty if a lower end is above an upper one.
+// A box that is not smaller than another one, in 255ths of a frame: the lower and the upper ends along the
+// axes. What reaches an end of the frame may reach beyond it, without limit. Empty if a lower end is above an
+// upper one.
 using CoarseBox = std::array<std::uint8_t, 6>;
 CoarseBox coarse(const Box& box, const Box& frame);
 Box boxOf(const CoarseBox& coarse, const Box& frame);
@@ -38,8 +39,8 @@ struct Answer {
   Runs seen{};                                // kConvex, kFused: those that may be seen
   std::vector<std::uint32_t> hidden_nodes{};  // kFused: what was found hidden as a whole; ascending
   // kFused: of each node that was asked about, in ascending order, a box around all panels that decided it
-  // besides those that lines of sight met. Asked about were those of hidden_nodes, and those above what is
-  // hidden or seen.
+  // besides those that lines of sight from FusedOcclusion::startOf the region met. Asked about were those of
+  // hidden_nodes, and those above what is hidden or seen.
   std::vector<CoarseBox> followed{};
   std::uint64_t least = 0, most = 0;  // kPoint: bounds of the triangles that are seen
 };

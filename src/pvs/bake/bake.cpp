@@ -229,7 +229,7 @@ std::uint64_t Bake::hash() const {
 
 struct Bake::Earlier {
   Earlier(EarlierBake earlier, std::shared_ptr<const Data> d, const SceneMarks& marks)
-      : data(std::move(d)), recall(std::move(earlier), data->scene_id, data->scene, marks) {}
+      : data(std::move(d)), recall(std::move(earlier), data->scene, marks) {}
 
   std::shared_ptr<const Data> data;
   Recall recall;

@@ -149,10 +149,6 @@ std::uint64_t countCells(const CellBox& root, const OctreeCell& cell, std::uint3
   return count;
 }
 
-bool isThorough(const BakeSettings& settings) {
-  return settings.narrowings > 0 || settings.divisions > 0;
-}
-
 // The surfaces while these doors are closed and all others are open.
 Panels panelsOf(const SceneView& scene, const DoorGroups& doors, std::span<const ObjectId> closed,
                 const BakeSettings& settings, const ParallelFor& parallel_for) {
@@ -305,10 +301,6 @@ void BakeScene::countOccluders() {
       counts.largest_area = std::max(counts.largest_area, occluders[i].area);
     }
   }
-}
-
-bool BakeScene::thorough() const {
-  return isThorough(settings);
 }
 
 std::size_t BakeScene::sampleBytes() const {

@@ -20,7 +20,13 @@ namespace sightline::pvs {
 
 // Version of the bake method; increase it whenever the same input would give other cells, or the same
 // question another answer.
-inline constexpr std::uint32_t kBakeVersion = 11;
+inline constexpr std::uint32_t kBakeVersion = 12;
+
+// Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
+// without what keeps them from it. So it is where narrowing or dividing is asked for.
+inline bool isThorough(const BakeSettings& settings) {
+  return settings.narrowings > 0 || settings.divisions > 0;
+}
 
 struct BakeScene {
   // settings: must be valid, with at least one box of viewers.
@@ -68,9 +74,6 @@ struct BakeScene {
   // The box of these: the sets of the cell are those of viewers anywhere in it. It lies within the region of
   // the cell's parent.
   CellBox regionOf(const OctreeCell& cell) const;
-  // Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
-  // without what keeps them from it. So it is where narrowing or dividing is asked for.
-  bool thorough() const;
   // BakeSettings::sample_bytes, or what is chosen if it is not given.
   std::size_t sampleBytes() const;
   // Any cell down to this level may be divided; below it, only cells near occluders.

@@ -138,10 +138,7 @@ void CellRecall::compareNodes(const Answer* before) {
 }
 
 std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, const CellBox& region) const {
-  // Which objects are left out before a question is asked again depends on the order in which panels are
-  // followed, and so on all of the scene.
-  const bool useful = recall_ != nullptr && (!scene_.thorough() || recall_->sameScene());
-  const std::uint32_t same = !useful || nodes_before_.empty() ? Recall::kNone : recall_->nodeBefore(number);
+  const std::uint32_t same = nodes_before_.empty() ? Recall::kNone : recall_->nodeBefore(number);
   if (same == Recall::kNone || nodes_before_[same] == Known::kNothing) {
     return std::nullopt;
   }
@@ -157,7 +154,9 @@ std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, con
 
 // An answer depends on the panels that the lines of sight of the question meet, and on those that were
 // followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
-// Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
+// The order in which they are followed, and with it which objects are left out, depends on their content only
+// (PanelRank). Where narrowing or dividing decided, that may be anywhere in the shaft, and decided_in is all
+// of space.
 bool CellRecall::holds(std::uint32_t number, const CellBox& region, const Box& decided_in) const {
   const Box& box = scene_.boxes.nodes[number].bounds;
   const Vec3d start = FusedOcclusion::startOf(region);

@@ -268,23 +268,56 @@ BakedCell allObjectsIn(const BakeScene& scene, std::span<const BakedCell> childr
   return cell;
 }
 
+namespace {
+
+// Triangles of a set without what doors of a group hide.
+std::uint64_t leftBy(const BakeScene& scene, std::uint32_t group, const Runs& seen, const DoorRuns& doors) {
+  const auto found = std::ranges::find_if(doors, [group](const auto& d) { return d.group == group; });
+  return scene.triangles.of(seen) - (found == doors.end() ? 0 : scene.triangles.of(found->hidden));
+}
+
+// trianglesOf() while the doors of a group are closed.
+std::uint64_t trianglesBehind(const BakeScene& scene, std::uint32_t group, const CellSets& sets) {
+  return sets.plane ? std::max(leftBy(scene, group, sets.front, sets.front_doors),
+                               leftBy(scene, group, sets.back, sets.back_doors))
+                    : leftBy(scene, group, sets.whole, sets.whole_doors);
+}
+
+// Numbers of triangles: of the cell that children become together, and the fewest of any child.
+struct MergedTriangles {
+  std::uint64_t together = 0, fewest = ~std::uint64_t{0};
+
+  // True if they are alike as far as merging tolerates differences.
+  bool alike(const BakeScene& scene) const {
+    return static_cast<double>(together) <=
+           (1.0 + scene.settings.merge_tolerance) * static_cast<double>(fewest);
+  }
+};
+
+}  // namespace
+
 void mergeChildren(const BakeScene& scene, BakedCell& cell) {
   std::optional<BakedCell> one = cell.leaf() ? std::nullopt : joined(scene, cell.children);
   if (!one) {
     return;
   }
   const Counts counts = countsOf(scene, cell.children);
-  std::uint64_t fewest = ~std::uint64_t{0};
-  for (std::size_t i = 0; i < cell.children.size(); ++i) {
-    if (counts[i]) {
-      fewest = std::min(fewest, trianglesOf(scene, cell.children[i].sets));
+  const auto countBy = [&](const auto& triangles) {
+    MergedTriangles merged{.together = triangles(one->sets)};
+    for (std::size_t i = 0; i < cell.children.size(); ++i) {
+      if (counts[i]) {
+        merged.fewest = std::min(merged.fewest, triangles(cell.children[i].sets));
+      }
     }
-  }
-  const std::uint64_t together = trianglesOf(scene, one->sets);
-  const bool alike =
-      static_cast<double>(together) <= (1.0 + scene.settings.merge_tolerance) * static_cast<double>(fewest);
+    return merged;
+  };
+  const MergedTriangles open = countBy([&](const CellSets& sets) { return trianglesOf(scene, sets); });
   const std::uint64_t budget = scene.settings.triangle_budget;
-  if (alike && (together <= budget || fewest > budget)) {
+  bool good = open.alike(scene) && (open.together <= budget || open.fewest > budget);
+  for (std::uint32_t group = 0; group < scene.doors.groups.size() && good; ++group) {
+    good = countBy([&](const CellSets& sets) { return trianglesBehind(scene, group, sets); }).alike(scene);
+  }
+  if (good) {
     cell = std::move(*one);
   }
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 
 #include "src/base/byte_stream.h"
 #include "src/base/hash_slots.h"
+#include "src/pvs/bake/number_hash.h"
 #include "src/pvs/format/checksum.h"
 
 namespace sightline::pvs {
@@ -23,26 +23,6 @@ constexpr std::size_t kChecksumBytes = 8;
 // Bytes that a box, an object, a node, a panel and a part take in the file.
 constexpr std::size_t kBoxBytes = 24, kObjectBytes = 8 + kBoxBytes + 4 + 1, kNodeBytes = kBoxBytes + 16,
                       kPanelBytes = 8 + kBoxBytes, kPartBytes = 16;
-
-// Hashes numbers one after the other.
-class NumberHash {
- public:
-  void add(std::uint64_t number) { hash_.addValue(number); }
-  void add(double number) { hash_.addValue(std::bit_cast<std::uint64_t>(number)); }
-  void add(const Vec3d& v) {
-    add(v.x);
-    add(v.y);
-    add(v.z);
-  }
-  void add(const Box& box) {
-    add(Vec3d(box.min));
-    add(Vec3d(box.max));
-  }
-  std::uint64_t value() const { return hash_.value(); }
-
- private:
-  Checksum hash_;
-};
 
 std::uint64_t contentOf(const ConvexOccluders& all, const ConvexOccluder& occluder) {
   NumberHash hash;
@@ -125,16 +105,18 @@ std::vector<ObjectMark> objectMarks(const BakeScene& scene) {
 }
 
 // objects: by ObjectId.
-std::vector<PanelMark> panelMarks(const Panels& panels, std::span<const ObjectMark> objects) {
+std::vector<PanelMark> panelMarks(const BakeScene& scene, std::span<const ObjectMark> objects) {
+  const Panels& panels = scene.panels;
   // What a panel is by itself; then, what it is joined with.
   std::vector<std::uint64_t> own;
   own.reserve(panels.panels.size());
-  for (const Panel& panel : panels.panels) {
+  for (std::size_t i = 0; i < panels.panels.size(); ++i) {
     NumberHash hash;
-    hash.add(objects[panel.object].content);
-    for (const std::uint32_t vertex : panels.sheetsOf(panel)) {
-      hash.add(panels.vertices[vertex]);
-    }
+    hash.add(objects[panels.panels[i].object].content);
+    const PanelRank& rank = panels.ranks[i];
+    hash.add(rank.content);
+    // The order in which panels are followed decides which objects are left out of a question.
+    hash.add(isThorough(scene.settings) ? std::uint64_t{rank.steps} : 0);
     own.push_back(hash.value());
   }
   std::vector<PanelMark> marks;
@@ -264,7 +246,7 @@ SceneMarks marksOf(const BakeScene& scene) {
     marks.objects.push_back(by_id[object.value]);
   }
   marks.nodes = scene.boxes.nodes;
-  marks.panels = panelMarks(scene.panels, by_id);
+  marks.panels = panelMarks(scene, by_id);
   return marks;
 }
 

@@ -237,13 +237,15 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& from, const Vec3d& to) {
   return true;
 }
 
-// Sets crossings_ to all those of a line of sight.
+// Sets crossings_ to all those of a line of sight, in the order of their panels' ranks.
 void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to) {
   crossings_.clear();
   const SegmentTest segment(from, to, error_);
   forEachLeaf(
       panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
       [&](const BoxNode& leaf) { crossPanel(panelOf(leaf), from, to); });
+  std::sort(crossings_.begin(), crossings_.end(),
+            [this](const Crossing& a, const Crossing& b) { return panels_.before(a.panel, b.panel); });
 }
 
 // Whether no panel blocks the line of sight. What blocked other lines is asked first: it often blocks this
@@ -332,15 +334,13 @@ void FusedOcclusion::addToComponent(const Crossing& crossing) {
 // closed; some may be missing then. Most are not, so the way is towards the border of the surface first.
 bool FusedOcclusion::gather(std::uint32_t component) {
   const std::size_t first = members_.size() - 1;
-  const auto farther = [this](std::uint32_t a, std::uint32_t b) {
-    return panels_.steps_to_border[a] > panels_.steps_to_border[b];
-  };
+  const auto later = [this](std::uint32_t a, std::uint32_t b) { return panels_.before(b, a); };
   ahead_.assign(1, members_[first]);
+  followed_.extend(panels_.bounds[members_[first]]);
   for (std::uint32_t looked_at = 0; !ahead_.empty(); ++looked_at) {
-    std::pop_heap(ahead_.begin(), ahead_.end(), farther);
+    std::pop_heap(ahead_.begin(), ahead_.end(), later);
     const std::uint32_t panel = ahead_.back();
     ahead_.pop_back();
-    followed_.extend(panels_.bounds[panel]);
     if (looked_at == most_members_) {
       return false;
     }
@@ -370,7 +370,8 @@ bool FusedOcclusion::gather(std::uint32_t component) {
       places_[beyond] = {question_, component};
       members_.push_back(beyond);
       ahead_.push_back(beyond);
-      std::push_heap(ahead_.begin(), ahead_.end(), farther);
+      std::push_heap(ahead_.begin(), ahead_.end(), later);
+      followed_.extend(panels_.bounds[beyond]);
     }
   }
   return true;

@@ -48,7 +48,7 @@ class FusedOcclusion {
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
   // Where all lines of sight from a region begin that ask() tries.
   static Vec3d startOf(const CellBox& region);
-  // A box around all panels whose surfaces were followed since the last call.
+  // A box around all panels that were followed, or found next to those, since the last call.
   Box takeFollowed() { return std::exchange(followed_, {}); }
   // How much farther than the near distance, for sure, something has to be.
   double nearMargin() const { return error_ + 0x1p-40 * magnitude_; }

@@ -7,7 +7,7 @@ namespace sightline::pvs {
 NodeOcclusion::NodeOcclusion(const BakeScene& scene, const Panels& panels)
     : scene_(scene),
       questions_(panels, scene.settings.near_distance, scene.magnitude,
-                 scene.thorough() ? FusedOcclusion::kMostRepeats : 0) {}
+                 isThorough(scene.settings) ? FusedOcclusion::kMostRepeats : 0) {}
 
 bool NodeOcclusion::hides(std::uint32_t number, const CellBox& region) {
   const BoxTreeView boxes = scene_.boxes.view();

@@ -7,6 +7,7 @@
 
 #include "src/occluders/conform.h"
 #include "src/occluders/surface_mesh.h"
+#include "src/pvs/bake/number_hash.h"
 
 namespace sightline::pvs {
 namespace {
@@ -91,6 +92,15 @@ class PanelMaker {
         {vertices, given.corners},
         {.divide = many ? occluders::Divide::kFaces : occluders::Divide::kPenetrations}, parallel_for);
     panels_.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
+    content_of_.resize(scene.objects.size());
+    for (std::size_t i = 0; i < given.objects.size(); ++i) {
+      NumberHash hash;
+      hash.add(content_of_[given.objects[i]]);
+      for (std::size_t corner = 3 * i; corner < 3 * i + 3; ++corner) {
+        hash.add(vertices[given.corners[corner]]);
+      }
+      content_of_[given.objects[i]] = hash.value();
+    }
     panels_.slack = roundedUp(mesh.slack);
     for (std::size_t i = 0; i < mesh.source.size(); ++i) {
       const std::uint32_t object = given.objects[mesh.source[i]];
@@ -192,7 +202,9 @@ class PanelMaker {
                                 .object = object_of_[seed]});
     }
     addEdges(panel_of, order);
-    countSteps();
+    rings_ = {};
+    ring_of_ = {};
+    joined_ = {};
     LargeVector<std::uint32_t> sheets;
     sheets.reserve(panels_.sheets.size());
     for (const std::uint32_t sheet : order) {
@@ -200,6 +212,7 @@ class PanelMaker {
                     panels_.sheets.begin() + 3 * std::ptrdiff_t{sheet} + 3);
     }
     panels_.sheets = std::move(sheets);
+    addRanks();
     addBounds();
   }
 
@@ -240,13 +253,26 @@ class PanelMaker {
     }
   }
 
+  void addRanks() {
+    panels_.ranks.resize(panels_.panels.size());
+    for (std::size_t i = 0; i < panels_.panels.size(); ++i) {
+      const Panel& panel = panels_.panels[i];
+      NumberHash hash;
+      hash.add(content_of_[panel.object]);
+      for (const std::uint32_t vertex : panels_.sheetsOf(panel)) {
+        hash.add(panels_.vertices[vertex]);
+      }
+      panels_.ranks[i] = {kMostSteps, hash.value()};
+    }
+    countSteps();
+  }
+
   // Counts each panel's steps to the nearest border, from the borders inwards.
   void countSteps() {
-    panels_.steps_to_border.assign(panels_.panels.size(), kNone);
     std::vector<std::uint32_t> reached;
     const auto reach = [&](std::uint32_t panel, std::uint32_t steps) {
-      if (panels_.steps_to_border[panel] == kNone) {
-        panels_.steps_to_border[panel] = steps;
+      if (steps < panels_.ranks[panel].steps) {
+        panels_.ranks[panel].steps = steps;
         reached.push_back(panel);
       }
     };
@@ -260,7 +286,7 @@ class PanelMaker {
     for (std::size_t next = 0; next < reached.size(); ++next) {
       for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[reached[next]])) {
         if (edge.beyond != kNoPanel) {
-          reach(edge.beyond, panels_.steps_to_border[reached[next]] + 1);
+          reach(edge.beyond, panels_.ranks[reached[next]].steps + 1);
         }
       }
     }
@@ -280,9 +306,10 @@ class PanelMaker {
   }
 
   Panels panels_;
-  std::vector<std::uint32_t> object_of_;  // by sheet
-  std::vector<std::uint32_t> joined_;     // by half-edge: one of another sheet, or kNone
-  std::vector<HalfEdge> rings_;           // those of one edge together, by their sheets' angles
+  std::vector<std::uint64_t> content_of_;  // by object: a hash of its triangles as they were given
+  std::vector<std::uint32_t> object_of_;   // by sheet
+  std::vector<std::uint32_t> joined_;      // by half-edge: one of another sheet, or kNone
+  std::vector<HalfEdge> rings_;            // those of one edge together, by their sheets' angles
   struct RingPlace {
     std::uint32_t first = 0, count = 0;  // of its edge, in rings_
     std::uint32_t self = 0;              // itself, from the first one on

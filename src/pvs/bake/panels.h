@@ -11,6 +11,7 @@
 //
 // A panel is a set of joined sheets of one object and of similar direction, which are taken together.
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,6 +48,19 @@ struct Panel {
   std::uint32_t object = 0;
 };
 
+// In which order panels are taken, whatever their numbers are: which objects a question leaves out depends on
+// it, and has to be the same when other objects of the scene have changed.
+struct PanelRank {
+  // Over how many joined edges the way to a border of the surface leads, kMostSteps at most: a change of a
+  // border is no change of what is far from it.
+  std::uint32_t steps = 0;
+  std::uint64_t content = 0;  // a hash of its sheets, and of all triangles of its object as they were given
+
+  bool operator==(const PanelRank&) const = default;
+  auto operator<=>(const PanelRank&) const = default;
+};
+inline constexpr std::uint32_t kMostSteps = 8;
+
 struct Panels {
   // Scene space. None is farther than `slack` metres from where it would be without rounding; there, the
   // sheets of an object are its triangles exactly.
@@ -55,14 +69,17 @@ struct Panels {
   LargeVector<PanelEdge> edges{};
   LargeVector<SheetAround> around{};
   LargeVector<Panel> panels{};
-  LargeVector<Box> bounds{};  // by panel, also of what was not rounded
-  BoxTree tree{};             // its objects are numbers of panels
-  // By panel: over how many joined edges the way to a border of the surface leads.
-  std::vector<std::uint32_t> steps_to_border{};
+  LargeVector<Box> bounds{};       // by panel, also of what was not rounded
+  BoxTree tree{};                  // its objects are numbers of panels
+  std::vector<PanelRank> ranks{};  // by panel
   double slack = 0.0;
 
   std::span<const std::uint32_t> sheetsOf(const Panel& p) const {
     return std::span(sheets).subspan(std::size_t{3} * p.first_sheet, std::size_t{3} * p.sheet_count);
+  }
+  // Whether panel a is taken before panel b. Those of equal content are taken in the order of their objects.
+  bool before(std::uint32_t a, std::uint32_t b) const {
+    return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : a < b;
   }
   std::span<const PanelEdge> edgesOf(const Panel& p) const {
     return std::span(edges).subspan(p.first_edge, p.edge_count);

@@ -23,11 +23,8 @@ CellBox wider(const CellBox& box, double by) {
 
 }  // namespace
 
-Recall::Recall(EarlierBake earlier, const SceneId& id, const BakeScene& scene, const SceneMarks& marks)
-    : earlier_(std::move(earlier)),
-      same_scene_(earlier_.scene == id),
-      magnitude_(scene.magnitude),
-      slack_(scene.panels.slack) {
+Recall::Recall(EarlierBake earlier, const BakeScene& scene, const SceneMarks& marks)
+    : earlier_(std::move(earlier)), magnitude_(scene.magnitude), slack_(scene.panels.slack) {
   for (const Vec3d& vertex : scene.panels.vertices) {
     magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }

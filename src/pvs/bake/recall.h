@@ -21,7 +21,7 @@ class Recall {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   // scene must outlive this. Precondition: the settings and the space of both marks are equal.
-  Recall(EarlierBake earlier, const SceneId& id, const BakeScene& scene, const SceneMarks& marks);
+  Recall(EarlierBake earlier, const BakeScene& scene, const SceneMarks& marks);
 
   const EarlierBake& earlier() const { return earlier_; }
   // The place of an object in the box tree of the earlier bake, by its place now; kNone if it has changed.
@@ -38,8 +38,6 @@ class Recall {
   std::uint64_t trianglesCome() const { return triangles_come_; }
   std::uint32_t objectsGone() const { return objects_gone_; }
   std::uint32_t objectsCome() const { return objects_come_; }
-  // Whether it was a bake of the very same scene.
-  bool sameScene() const { return same_scene_; }
   // False only if no changed panel, of either scene, meets any line of sight from the region to the box.
   bool panelsDiffer(const CellBox& region, const Box& box) const;
   // False only if no changed panel meets the box.
@@ -54,7 +52,6 @@ class Recall {
   void comparePanels(const SceneMarks& marks);
 
   EarlierBake earlier_;
-  bool same_scene_;
   std::vector<std::uint32_t> before_, now_, node_before_;
   std::vector<Box> changed_occluders_;
   BoxTree changed_panels_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "src/math/longest_axis.h"
 
@@ -67,6 +68,14 @@ bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, co
   return decide(region, target, effort) == Answer::kHidden;
 }
 
+Box RegionOcclusion::takeFollowed() {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Box followed = fused_.takeFollowed();
+  return std::exchange(asked_about_less_, false)
+             ? Box{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}}
+             : followed;
+}
+
 RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget target,
                                                 const RegionEffort& effort) {
   decided_by_ = WitnessKind::kSurfaces;
@@ -74,6 +83,7 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   if (answer != Answer::kUndecided) {
     return answer;
   }
+  asked_about_less_ = asked_about_less_ || effort.narrowings > 0 || effort.divisions > 0;
   if (effort.narrowings > 0) {
     decided_by_ = WitnessKind::kNarrowed;
     return decideThroughWindows(region, target.box, target.object, effort);

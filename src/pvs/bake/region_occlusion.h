@@ -33,8 +33,9 @@ class RegionOcclusion {
   WitnessKind decidedBy() const { return decided_by_; }
   // If it was kSurfaces.
   const FusedOcclusion::Proof& proof() const { return fused_.proof(); }
-  // FusedOcclusion::takeFollowed, of all questions that hides() asked.
-  Box takeFollowed() { return fused_.takeFollowed(); }
+  // A box around all panels that decided what hides() answered since the last call, besides those that lines
+  // of sight from FusedOcclusion::startOf the region met; all of space where it narrowed or divided.
+  Box takeFollowed();
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to) { return fused_.isClear(from, to); }
 
@@ -75,6 +76,7 @@ class RegionOcclusion {
   FusedOcclusion fused_;
   double near_distance_;
   WitnessKind decided_by_ = WitnessKind::kSurfaces;
+  bool asked_about_less_ = false;  // since the last call of takeFollowed()
 };
 
 }  // namespace sightline::pvs

@@ -69,7 +69,7 @@ bool Shaft::misses(const Box& box) const {
 std::uint32_t Shaft::sidesBeyond(const Vec3d& point) const {
   std::uint32_t beyond = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
-    beyond |= (dot(sides_[i].normal, point) > sides_[i].level ? 1u : 0u) << i;
+    beyond |= std::uint32_t{dot(sides_[i].normal, point) > sides_[i].level} << i;
   }
   return beyond;
 }

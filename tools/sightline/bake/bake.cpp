@@ -218,9 +218,9 @@ Result<Planned> planBake(const BakeOptions& options) {
                  load_us,           watch.lap(),    std::move(viewpoints), std::move(update)};
 }
 
-// Assembles all parts, writes the file and reports what is in it.
-Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
-                        BakedParts parts, Checkpoint& checkpoint) {
+// Assembles all parts, and writes the files that belong beside the baked one.
+Result<BakedVisibility> assemble(const BakeOptions& options, const Planned& planned, BakeReport& report,
+                                 BakedParts parts) {
   Result<BakedVisibility> baked = planned.bake.assemble(parts);
   if (!baked) {
     return baked.error();
@@ -253,9 +253,24 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
                                     {*databaseNames(options), options.viewpoints, planned.viewpoints},
                                     threads.parallelFor());
   report.times.databases = watch.lap();
+  return baked;
+}
+
+// Writes the files of the bake from all of its parts, and reports what is in them.
+Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
+                        BakedParts parts, Checkpoint& checkpoint) {
+  const auto unfinished = [&](const Error& error) {
+    return Error{fmt::format("{}; the finished parts are kept in {}, and --resume goes on from there",
+                             error.message, options.partsFile())};
+  };
+  const Result<BakedVisibility> baked = assemble(options, planned, report, std::move(parts));
+  if (!baked) {
+    return unfinished(baked.error());
+  }
+  Stopwatch watch;
   const SignalGuard guard;  // from here on finishing is faster than stopping
   if (const Status ok = writeSight(options.output, *baked); !ok) {
-    return ok.error();
+    return unfinished(ok.error());
   }
   report.times.write = watch.lap();
   const Result<SightFile> file = SightFile::open(options.output);

@@ -30,7 +30,7 @@ struct CheckOptions {
   CommonOptions common;
   std::string file, witnesses, closed;
   double crack_width = 0.0;
-  std::uint32_t rays = 16, seed = 1;
+  std::uint32_t divisions = 8, rays = 16, seed = 1;
 };
 
 Result<Witnesses> loadWitnesses(const std::string& file, const SightFile& baked) {
@@ -75,6 +75,7 @@ std::string toJson(const CheckReport& report, const Scene& scene, const CrackClo
   json["scene"] = sceneJson(scene, closing);
   json["seed"] = options.seed;
   json["rays"] = options.rays;
+  json["divisions"] = options.divisions;
   json["inherited"] = report.inherited;
   json["kinds"] = kinds;
   json["contradictions"] = contradicted;
@@ -136,9 +137,12 @@ Result<ExitCode> runCheck(const CheckOptions& options) {
   if (!witnesses) {
     return witnesses.error();
   }
-  const Result<CheckReport> report = checkClaims(
-      **baked, *scene, witnesses->all, options.witnesses,
-      {.rays = options.rays, .seed = options.seed, .threads = options.common.threads, .closed = *closed});
+  const Result<CheckReport> report = checkClaims(**baked, *scene, witnesses->all, options.witnesses,
+                                                 {.divisions = options.divisions,
+                                                  .rays = options.rays,
+                                                  .seed = options.seed,
+                                                  .threads = options.common.threads,
+                                                  .closed = *closed});
   if (!report) {
     return report.error();
   }
@@ -170,6 +174,12 @@ void addCheck(CLI::App& app, Command& chosen) {
   addClosedOption(*command, options->closed);
   addCrackWidthOption(*command, options->crack_width);
   command
+      ->add_option("--divisions", options->divisions,
+                   "how often a cell or an object is halved that is not proved to be hidden as a whole; each "
+                   "half has to be")
+      ->check(CLI::Range(0u, 16u))
+      ->capture_default_str();
+  command
       ->add_option("--rays", options->rays,
                    "random lines of sight that try to contradict each claim that is not proved, at most")
       ->check(CLI::Range(0u, 1000000u))
@@ -179,8 +189,9 @@ void addCheck(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->footer(
       "Every pair of a cell and an object that is not in its set is a claim. It is proved by the scene's "
-      "triangles alone: one closed convex body or one surface hides the object's box. Proofs share no code "
-      "with the bake. What is not proved is tried by lines of sight, which prove nothing. Of doors, what is "
+      "triangles alone: one closed convex body or one surface hides the object's box, or such hide parts of "
+      "it from parts of the cell. Proofs share no code with the bake. What is not proved is tried by lines "
+      "of sight, which prove nothing. Of doors, what is "
       "checked holds while exactly those of --closed are closed; what they hide has no witnesses. Exit code "
       "1: a claim is contradicted; 2: a witness is false, or a file is damaged or of another scene.\n"
       "Examples:\n"

@@ -224,7 +224,9 @@ class Checker {
     const HidingWitness& witness = witnesses_[one.use.witness];
     const RegionClaim claim = regionClaim(regionOfWitness(witness, one.leaf), one.use.position,
                                           witness.kind == WitnessKind::kConvex ? witness.object : ObjectId());
-    one.proved = proof_.proves(claim);
+    const bool in_parts = witness.kind == WitnessKind::kBoxes || witness.kind == WitnessKind::kNarrowed ||
+                          witness.kind == WitnessKind::kDivided;
+    one.proved = proof_.provesInParts(claim, in_parts ? settings_.divisions : 0);
     one.refuted = (with_line && hasFalseLine(witness)) ||
                   (!one.proved && witness.kind == WitnessKind::kConvex && proof_.refutesObject(claim));
   }
@@ -283,7 +285,7 @@ class Checker {
 
   Verdict decide(const Claim& claim, ContradictedClaim& found) const {
     const EyeRegion region = regionOf(octree_, cells_[claim.leaf], claim.leaf, claim.part);
-    if (proof_.proves(regionClaim(region, claim.position, {}))) {
+    if (proof_.provesInParts(regionClaim(region, claim.position, {}), settings_.divisions)) {
       return Verdict::kProved;
     }
     RegionSearchSettings search;

@@ -38,8 +38,9 @@ struct CheckReport {
 };
 
 struct ClaimCheckSettings {
-  std::uint32_t rays = 16;  // for each claim that is not proved, at most
-  std::uint32_t seed = 1;   // of the rays
+  std::uint32_t divisions = 8;  // see RegionProof::provesInParts
+  std::uint32_t rays = 16;      // for each claim that is not proved, at most
+  std::uint32_t seed = 1;       // of the rays
   std::uint32_t threads = 1;
   // Doors of the file that are closed, ascending; the scene's other doors are marked as never occluders.
   std::vector<ObjectId> closed{};
