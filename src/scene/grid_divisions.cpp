@@ -44,7 +44,7 @@ struct Reach {
 struct Block {
   std::array<Reach, 3> along{};  // by axis
   float volume = 0.0f;
-  bool done = false;  // it is divided or cannot be
+  bool done = false;             // it is divided or cannot be
   std::uint32_t most_boxes = 1;  // that its divisions give, or as many as an object may have
 };
 
