@@ -23,14 +23,16 @@ void TriangleBender::findWay(std::uint32_t a, std::uint32_t b, std::vector<std::
   if (std::size_t{edge.low} + 1 >= first_of_low_.size()) {
     return;
   }
-  for (std::uint32_t i = first_of_low_[edge.low]; i < first_of_low_[edge.low + 1]; ++i) {
-    if (edges_[i].high == edge.high) {
-      const std::span<const std::uint32_t> through = through_[i];
-      way.assign(through.begin(), through.end());
-      if (a > b) {
-        std::reverse(way.begin(), way.end());
-      }
-    }
+  const auto of_low = edges_.begin() + first_of_low_[edge.low],
+             end = edges_.begin() + first_of_low_[edge.low + 1];
+  const auto found = std::ranges::lower_bound(of_low, end, edge.high, {}, &MeshEdge::high);
+  if (found == end || found->high != edge.high) {
+    return;
+  }
+  const std::span<const std::uint32_t> through = through_[static_cast<std::size_t>(found - edges_.begin())];
+  way.assign(through.begin(), through.end());
+  if (a > b) {
+    std::reverse(way.begin(), way.end());
   }
 }
 

@@ -36,7 +36,7 @@ using geometry::Lattice;
 
 constexpr std::size_t kSearchesOfPart = 4096, kEndsOfPart = 65536, kLineRowsOfPart = 16384;
 constexpr std::size_t kVerticesOfRow = 4;  // on average
-constexpr int kWantedBitsOfRow = 3;        // 2 to this power of lines that are asked for are told apart
+constexpr int kWantedBitsOfRow = 3;        // a row has 2 to this power of bits for lines that are asked for
 constexpr std::uint64_t kMostSteps = 16;   // more places of an edge than these are not looked up one by one
 
 // How the vertices on an edge are found.
@@ -320,7 +320,8 @@ class EdgeSearch {
   }
 
   // Lists the ends that may lie in boxes around the edges that are searched for in boxes: few, if those are
-  // few. The others are in cells of a coarse grid that no such box reaches, but for cells that share a bit.
+  // few. Ends in cells of a coarse grid that no such box reaches are left out. As cells share bits, a few of
+  // them stay.
   std::vector<std::uint32_t> endsInBoxes() const {
     constexpr double kCells = 256.0;  // along the longest side
     constexpr std::uint64_t kBits = std::uint64_t{1} << 20;

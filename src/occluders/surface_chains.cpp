@@ -49,7 +49,7 @@ class EdgeCollector {
   void add(std::span<const Side> sides) {
     if (sides.size() == 2 && sides[0].value() != sides[1].value() &&
         cluster_of_[sides[0].triangle()] == cluster_of_[sides[1].triangle()]) {
-      return;  // as most edges of a mesh of many triangles: within a cluster
+      return;  // most edges lie within one cluster, where both sides cancel
     }
     sums_.clear();
     for (const Side side : sides) {

@@ -45,7 +45,7 @@ struct Block {
   std::array<Reach, 3> along{};  // by axis
   float volume = 0.0f;
   bool done = false;             // it is divided or cannot be
-  std::uint32_t most_boxes = 1;  // that its divisions give, or as many as an object may have
+  std::uint32_t most_boxes = 1;  // the greatest number that its divisions give, at most max_boxes_
 };
 
 // By slab along one axis: what there is along the two axes that follow it.

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "src/base/scratch_array.h"
 #include "src/occluders/conform.h"
 #include "src/occluders/surface_mesh.h"
 #include "src/pvs/bake/number_hash.h"
@@ -202,9 +203,9 @@ class PanelMaker {
                                 .object = object_of_[seed]});
     }
     addEdges(panel_of, order);
-    rings_ = {};
-    ring_of_ = {};
-    joined_ = {};
+    base::freeVector(rings_);
+    base::freeVector(ring_of_);
+    base::freeVector(joined_);
     LargeVector<std::uint32_t> sheets;
     sheets.reserve(panels_.sheets.size());
     for (const std::uint32_t sheet : order) {
