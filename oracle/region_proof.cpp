@@ -305,22 +305,23 @@ bool RegionProof::proves(const RegionClaim& claim) const {
 }
 
 bool RegionProof::provesInParts(const RegionClaim& claim, std::uint32_t divisions) const {
-  return proves(claim) || provesParts(claim, TargetPieces(mesh_->scene, claim.target), divisions);
+  return proves(claim) ||
+         (divisions > 0 && provesHalves(claim, TargetPieces(mesh_->scene, claim.target), divisions));
+}
+
+bool RegionProof::provesPart(const RegionClaim& claim, const TargetPieces& target,
+                             std::uint32_t divisions) const {
+  return target.empty() || Attempt(*mesh_, claim, target.bounds()).run() ||
+         (divisions > 0 && provesHalves(claim, target, divisions));
 }
 
 // Halves whatever is larger, the region or the box around the pieces.
-bool RegionProof::provesParts(const RegionClaim& claim, const TargetPieces& target,
-                              std::uint32_t divisions) const {
+bool RegionProof::provesHalves(const RegionClaim& claim, const TargetPieces& target,
+                               std::uint32_t divisions) const {
   if (target.empty()) {
     return true;
   }
   const DoubleBox box = target.bounds();
-  if (Attempt(*mesh_, claim, box).run()) {
-    return true;
-  }
-  if (divisions == 0) {
-    return false;
-  }
   const Vec3d of_region = claim.region.max - claim.region.min, of_target = box.max - box.min;
   const bool halve_region = maxComponent(of_region) > maxComponent(of_target);
   const int axis = math::longestAxis(halve_region ? of_region : of_target);
@@ -331,7 +332,7 @@ bool RegionProof::provesParts(const RegionClaim& claim, const TargetPieces& targ
       (high ? half.region.min : half.region.max)[axis] = middle;
     }
     const double middle = 0.5 * (box.min[axis] + box.max[axis]);
-    if (!provesParts(half, halve_region ? target : target.half(axis, middle, high), divisions - 1)) {
+    if (!provesPart(half, halve_region ? target : target.half(axis, middle, high), divisions - 1)) {
       return false;
     }
   }

@@ -67,7 +67,8 @@ class RegionProof {
  private:
   class Attempt;
   DoubleBox boundsOf(ObjectId object) const;
-  bool provesParts(const RegionClaim& claim, const TargetPieces& target, std::uint32_t divisions) const;
+  bool provesPart(const RegionClaim& claim, const TargetPieces& target, std::uint32_t divisions) const;
+  bool provesHalves(const RegionClaim& claim, const TargetPieces& target, std::uint32_t divisions) const;
   std::unique_ptr<const ProofMesh> mesh_;
 };
 

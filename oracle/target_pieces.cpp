@@ -5,8 +5,8 @@
 namespace sightline {
 namespace {
 
-// A corner on a plane that cuts an edge is off by less than this part of the coordinates, however often
-// pieces were cut before.
+// A corner on a plane that cuts an edge is off by less than this part of the greatest coordinate of the
+// triangles, however often pieces were cut before.
 constexpr double kCutRounding = 0x1p-44;
 
 }  // namespace
@@ -14,6 +14,7 @@ constexpr double kCutRounding = 0x1p-44;
 TargetPieces::TargetPieces(const SceneView& scene, ObjectId object) {
   for (const std::uint32_t index : scene.indicesOf(scene.objects[object.value])) {
     corners_.emplace_back(scene.positions[index]);
+    margin_ = std::max(margin_, kCutRounding * maxComponent(abs(corners_.back())));
     if (corners_.size() % 3 == 0) {
       ends_.push_back(static_cast<std::uint32_t>(corners_.size()));
     }
@@ -25,12 +26,12 @@ DoubleBox TargetPieces::bounds() const {
   for (const Vec3d& corner : corners_) {
     box = {min(box.min, corner), max(box.max, corner)};
   }
-  const double by = kCutRounding * maxComponent(max(abs(box.min), abs(box.max)));
-  return {box.min - Vec3d{by, by, by}, box.max + Vec3d{by, by, by}};
+  const Vec3d wider{margin_, margin_, margin_};
+  return {box.min - wider, box.max + wider};
 }
 
 TargetPieces TargetPieces::half(int axis, double level, bool above) const {
-  TargetPieces pieces;
+  TargetPieces pieces(margin_);
   std::uint32_t begin = 0;
   for (const std::uint32_t end : ends_) {
     addCut(begin, end, axis, level, above, pieces);

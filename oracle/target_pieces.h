@@ -17,16 +17,17 @@ class TargetPieces {
   TargetPieces(const SceneView& scene, ObjectId object);
 
   bool empty() const { return ends_.empty(); }
-  // A box around all pieces, wider than rounding may move them.
+  // A box around all pieces, wider than rounding may move them. There must be some.
   DoubleBox bounds() const;
   // What lies on one side of a plane across an axis: the two halves hold all points of the pieces.
   TargetPieces half(int axis, double level, bool above) const;
 
  private:
-  TargetPieces() = default;
+  explicit TargetPieces(double margin) : margin_(margin) {}
   void addCut(std::uint32_t begin, std::uint32_t end, int axis, double level, bool above,
               TargetPieces& pieces) const;
 
+  double margin_ = 0.0;  // metres; a corner is off by less, however often pieces are cut
   std::vector<Vec3d> corners_;
   std::vector<std::uint32_t> ends_;  // of each polygon, in corners_
 };

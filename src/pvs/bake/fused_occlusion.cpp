@@ -256,11 +256,14 @@ bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to) {
     crossPanel(panel, from, to);
     return !clear();
   };
-  if (const auto known = std::find_if(blockers_.begin(), blockers_.end(), blocks); known != blockers_.end()) {
+  const SegmentTest segment(from, to, error_);
+  const auto known = std::ranges::find_if(blockers_, [&](std::uint32_t panel) {
+    return !segment.misses(panels_.bounds[panel]) && blocks(panel);
+  });
+  if (known != blockers_.end()) {
     std::rotate(blockers_.begin(), known, known + 1);
     return false;
   }
-  const SegmentTest segment(from, to, error_);
   return !anyLeaf(
       panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
       [&](const BoxNode& leaf) {

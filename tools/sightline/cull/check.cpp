@@ -30,7 +30,7 @@ struct CheckOptions {
   CommonOptions common;
   std::string file, witnesses, closed;
   double crack_width = 0.0;
-  std::uint32_t divisions = 8, rays = 16, seed = 1;
+  std::uint32_t divisions = 2, rays = 16, seed = 1;
 };
 
 Result<Witnesses> loadWitnesses(const std::string& file, const SightFile& baked) {

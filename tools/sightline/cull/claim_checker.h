@@ -38,7 +38,7 @@ struct CheckReport {
 };
 
 struct ClaimCheckSettings {
-  std::uint32_t divisions = 8;  // see RegionProof::provesInParts
+  std::uint32_t divisions = 2;  // see RegionProof::provesInParts
   std::uint32_t rays = 16;      // for each claim that is not proved, at most
   std::uint32_t seed = 1;       // of the rays
   std::uint32_t threads = 1;
