@@ -535,14 +535,12 @@ TEST(RegionOcclusion, WhatIsLeftOutMakesNoLineClear) {
 // What is remembered of one question, such as what blocked its lines, must not decide another.
 TEST(RegionOcclusion, ALineInThePlaneOfWhatBlockedAnotherIsClearBesideIt) {
   const Panels panels = findPanels(sceneOf({block({0, 0, 0}, {1, 1, 1})}).view());
-  FusedOcclusion questions(panels, 100.0);
   for (int axis = 0; axis < 3; ++axis) {
-    Vec3d from{0.5, 0.5, 0.5}, beside{5.0, 5.0, 5.0};
-    from[axis] = 5.0;
-    EXPECT_FALSE(questions.isClear(from, from * -1.0));
-    beside[axis] = 1.0;
-    Vec3d to = beside;
-    to[(axis + 1) % 3] = 9.0;
+    FusedOcclusion questions(panels, 100.0);
+    Vec3d above{0.3, 0.3, 0.4}, beside{5.0, 5.0, 0.0}, to{5.0, 5.0, 9.0};
+    above[axis] = 2.0;
+    beside[axis] = to[axis] = 1.0;
+    EXPECT_FALSE(questions.isClear(above, {0.31, 0.5, 0.41}));
     EXPECT_TRUE(questions.isClear(beside, to)) << "axis " << axis;
   }
 }
