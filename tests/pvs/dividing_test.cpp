@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "sightline/pvs/bake/bake.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_sets.h"
+#include "src/pvs/bake/cell_tree.h"
 #include "tests/pvs/bake_scenes.h"
 
 namespace sightline {
@@ -77,6 +82,36 @@ TEST(Dividing, ChildrenLookAsFarAsTheirParentHadTo) {
   ASSERT_EQ(root.below.size(), 8u);
   for (const PartTask& child : root.below) {
     EXPECT_EQ(child.search_distance, 2.0);
+  }
+}
+
+TEST(Dividing, CellsOfOnePartLookAsFarAsTheirParentHadTo) {
+  // As above, and 10 m from the root a wall that hides further crates. Cells that begin with the distance of
+  // the root, 2 m, see nothing gained at 4 m and look no farther; an eighth of the diagonal would reach it.
+  std::vector<Solid> solids{block({9.5f, -40, -40}, {9.6f, 48, 48}), block({-1.6f, -40, -40}, {-1.5f, 4, 48}),
+                            block({-40, 18, -40}, {48, 18.1f, 48})};
+  addCrates(solids, 20, 4, 4);
+  addCrates(solids, -20, -4, 4);
+  addCrates(solids, 4, 40, 4);
+  const Scene scene = sceneOf(solids);
+  BakeSettings settings = kRoot;
+  settings.search_distance = 1.0;
+  settings.max_depth = 1;
+  const OccluderSet occluders = allOccluders(scene);
+  const pvs::BakeScene bake(scene.view(), occluders, settings, serialFor);
+  ASSERT_GT(0.125 * bake.diagonal, 10.0);
+  pvs::CellBaker baker(bake);
+  pvs::CellOutcome outcome = pvs::decide(baker, bake, {.search_distance = 1.0});
+  ASSERT_FALSE(outcome.leaf);
+  const pvs::BakedCell cell = pvs::bakeBelow(baker, bake, {}, std::move(outcome));
+  ASSERT_EQ(cell.children.size(), 8u);
+  for (const pvs::BakedCell& child : cell.children) {
+    for (std::size_t crate = scene.objects.size() - 16; crate < scene.objects.size(); ++crate) {
+      const pvs::ObjectRun run{bake.position_of[crate], bake.position_of[crate] + 1};
+      pvs::Runs seen;
+      pvs::intersect(child.sets.whole, std::span(&run, 1), seen);
+      EXPECT_FALSE(seen.empty());
+    }
   }
 }
 
