@@ -127,7 +127,7 @@ double firstSearchDistance(const BakeScene& scene) {
   if (scene.settings.search_distance > 0.0) {
     return scene.settings.search_distance;
   }
-  return scene.position_of.size() > BakeSettings::kManyObjects ? scene.diagonal : 0.125 * scene.diagonal;
+  return scene.hasManyObjects() ? scene.diagonal : 0.125 * scene.diagonal;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,

@@ -304,8 +304,7 @@ void BakeScene::countOccluders() {
 }
 
 std::size_t BakeScene::sampleBytes() const {
-  return settings.sample_bytes.value_or(
-      position_of.size() > BakeSettings::kManyObjects ? 0 : kDefaultSampleBytes);
+  return settings.sample_bytes.value_or(hasManyObjects() ? 0 : kDefaultSampleBytes);
 }
 
 bool BakeScene::mayDivide(const OctreeCell& cell) const {

@@ -74,6 +74,7 @@ struct BakeScene {
   // The box of these: the sets of the cell are those of viewers anywhere in it. It lies within the region of
   // the cell's parent.
   CellBox regionOf(const OctreeCell& cell) const;
+  bool hasManyObjects() const { return position_of.size() > BakeSettings::kManyObjects; }
   // BakeSettings::sample_bytes, or what is chosen if it is not given.
   std::size_t sampleBytes() const;
   // Any cell down to this level may be divided; below it, only cells near occluders.

@@ -71,7 +71,7 @@ bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, co
 Box RegionOcclusion::takeFollowed() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Box followed = fused_.takeFollowed();
-  return std::exchange(asked_about_less_, false)
+  return std::exchange(narrowed_or_divided_, false)
              ? Box{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}}
              : followed;
 }
@@ -83,7 +83,7 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   if (answer != Answer::kUndecided) {
     return answer;
   }
-  asked_about_less_ = asked_about_less_ || effort.narrowings > 0 || effort.divisions > 0;
+  narrowed_or_divided_ = narrowed_or_divided_ || effort.narrowings > 0 || effort.divisions > 0;
   if (effort.narrowings > 0) {
     decided_by_ = WitnessKind::kNarrowed;
     return decideThroughWindows(region, target.box, target.object, effort);

@@ -76,7 +76,7 @@ class RegionOcclusion {
   FusedOcclusion fused_;
   double near_distance_;
   WitnessKind decided_by_ = WitnessKind::kSurfaces;
-  bool asked_about_less_ = false;  // since the last call of takeFollowed()
+  bool narrowed_or_divided_ = false;  // since the last call of takeFollowed()
 };
 
 }  // namespace sightline::pvs

@@ -41,6 +41,11 @@ bool before(const JudgedUse& a, const JudgedUse& b) {
 
 enum class Verdict : std::uint8_t { kProved, kSurvived, kContradicted };
 
+// Whether one object or surface hides all that the witness is about, from all of its region.
+bool namesObject(const HidingWitness& witness) {
+  return witness.kind == WitnessKind::kConvex || witness.kind == WitnessKind::kSurfaces;
+}
+
 class Checker {
  public:
   Checker(const SightFile& baked, const Scene& scene, const std::vector<HidingWitness>& witnesses,
@@ -91,9 +96,8 @@ class Checker {
   Status checkNames() const {
     for (std::size_t i = 0; i < witnesses_.size(); ++i) {
       const HidingWitness& w = witnesses_[i];
-      const bool names_object = w.kind == WitnessKind::kConvex || w.kind == WitnessKind::kSurfaces;
       if (w.hidden.back().end > baked_.boxes().objects.size() ||
-          (names_object && w.object.value >= scene_.objects.size())) {
+          (namesObject(w) && w.object.value >= scene_.objects.size())) {
         return refusal(i, "names an object that the scene does not have");
       }
     }
@@ -224,9 +228,7 @@ class Checker {
     const HidingWitness& witness = witnesses_[one.use.witness];
     const RegionClaim claim = regionClaim(regionOfWitness(witness, one.leaf), one.use.position,
                                           witness.kind == WitnessKind::kConvex ? witness.object : ObjectId());
-    const bool in_parts = witness.kind == WitnessKind::kBoxes || witness.kind == WitnessKind::kNarrowed ||
-                          witness.kind == WitnessKind::kDivided;
-    one.proved = proof_.provesInParts(claim, in_parts ? settings_.divisions : 0);
+    one.proved = proof_.provesInParts(claim, namesObject(witness) ? 0 : settings_.divisions);
     one.refuted = (with_line && hasFalseLine(witness)) ||
                   (!one.proved && witness.kind == WitnessKind::kConvex && proof_.refutesObject(claim));
   }
