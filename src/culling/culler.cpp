@@ -10,6 +10,7 @@
 #include "src/culling/scene_fit.h"
 #include "src/culling/set_filter.h"
 #include "src/culling/several_boxes.h"
+#include "src/culling/views_to_come.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {
@@ -59,7 +60,8 @@ struct Culler::Impl {
         method(&m),
         traits(m.traits()),
         fitted(fitsTogether(given, traits)),
-        sizes(SceneSizes::of(*scene.hierarchy, *scene.occluders)) {
+        sizes(SceneSizes::of(*scene.hierarchy, *scene.occluders)),
+        views_to_come(s.views_at_once) {
     // A hierarchy that does not fit is never read.
     CullingScene checked = scene;
     if (!fitted) {
@@ -102,6 +104,8 @@ struct Culler::Impl {
     visible.clear();
     culling::appendAll(*scene.hierarchy, scene.object_bounds.size(), visible);
     last_view.forget();
+    views_to_come.forget();
+    of_several = false;
     clearStatistics();
   }
 
@@ -115,14 +119,57 @@ struct Culler::Impl {
     return another;
   }
 
-  void cullObjects(const View& view, const Frustum& frustum, const OccluderSet* moving,
-                   std::span<const MovingSurfaces> moving_surfaces) {
+  // Culls a frame. alone: nothing but the scene itself hides anything in it.
+  void cullView(const View& view, const Frustum& frustum, bool alone, const OccluderSet* moving,
+                std::span<const MovingSurfaces> moving_surfaces) {
+    views_to_come.see(view);
+    if (alone && views_to_come.hold()) {
+      Laps laps;
+      stats.held = true;
+      clearStatistics();
+      keepInView(frustum);
+      stats.traverse_us = laps.lap();
+      return;
+    }
+    if (std::exchange(of_several, false)) {
+      visible.swap(answer);
+    }
+    of_several = alone && !filter && method->answersForRegions() && views_to_come.plan();
+    if (!of_several) {
+      views_to_come.end();
+      culled_view = view;
+      cullObjects(view, frustum, {}, moving, moving_surfaces);
+    } else {
+      culled_view = views_to_come.wide();
+      cullObjects(culled_view, frustumOf(culled_view), views_to_come.viewers(), moving, moving_surfaces);
+      Laps laps;
+      visible.swap(answer);
+      keepInView(frustum);
+      stats.traverse_us += laps.lap();
+    }
+    views_to_come.measure(culled_view, method->depthBuffer());
+  }
+
+  // Sets `visible` to the objects of `answer` that are in the view.
+  void keepInView(const Frustum& frustum) {
+    visible.clear();
+    for (const ObjectId object : answer) {
+      std::uint8_t cut = kAllFrustumPlanes;
+      if (classify(frustum, scene.object_bounds[object.value], cut) != FrustumSide::kOutside) {
+        visible.push_back(object);
+      }
+    }
+  }
+
+  void cullObjects(const View& view, const Frustum& frustum, const ViewerRegion& viewers,
+                   const OccluderSet* moving, std::span<const MovingSurfaces> moving_surfaces) {
     const bool jumped = last_view.jumpsTo(view);
     const bool another_set = filter && lookUp(view);
     const SetFilter* set = filter && !filter->everything() ? &*filter : nullptr;
     Laps laps;
     CullingFrame frame{.view = view,
                        .frustum = frustum,
+                       .viewers = viewers,
                        .jumped = jumped,
                        .moving_surfaces = moving_surfaces,
                        .max_occluders = settings.occluders.count,
@@ -203,6 +250,10 @@ struct Culler::Impl {
   std::optional<culling::OccluderChoice> choice;  // if the method uses occluders
   std::optional<culling::SeveralBoxes> several_boxes;
   culling::LastView last_view;
+  culling::ViewsToCome views_to_come;
+  std::vector<ObjectId> answer;  // what was kept for several views at once
+  bool of_several = false;       // `answer` is the last one, and not `visible`
+  View culled_view;              // for which it was found
   ParallelFor parallel_for = serialFor;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()
   std::vector<OccluderId> all_moving;
@@ -238,7 +289,11 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
     impl_->stats.traverse_us = impl_->classifyMoving(frustum, dynamic_boxes);
     return;
   }
-  impl_->cullObjects(view, frustum, moving, moving_surfaces);
+  impl_->cullView(view, frustum, moving == nullptr && moving_surfaces.empty(), moving, moving_surfaces);
+  if (impl_->stats.held) {
+    impl_->stats.traverse_us += impl_->classifyMoving(frustum, dynamic_boxes);
+    return;
+  }
   const double moving_us = impl_->classifyMoving(frustum, dynamic_boxes);
   impl_->method->finish(impl_->stats);
   impl_->takeStatistics();
@@ -270,6 +325,10 @@ std::uint64_t Culler::statistic(std::string_view group, std::string_view name) c
 }
 DepthBufferView Culler::depthBuffer() const {
   return impl_->keepsEverything() ? DepthBufferView{} : impl_->method->depthBuffer();
+}
+
+const View& Culler::depthBufferView() const {
+  return impl_->culled_view;
 }
 
 void Culler::setParallelFor(ParallelFor parallel_for) {

@@ -25,10 +25,12 @@ constexpr double kPixel = kGridStep, kMargin = BoundaryEdge::kMargin, kBeyond = 
 // What was computed of the edges of a vector.
 struct Prepared {
   HWY_ALIGN double x[kMostLanes], slope[kMostLanes];
-  HWY_ALIGN float left[kMostLanes], right[kMostLanes], reach[kMostLanes], doubt[kMostLanes];
+  HWY_ALIGN float left[kMostLanes], right[kMostLanes], reach_left[kMostLanes], reach_right[kMostLanes],
+      doubt[kMostLanes], end_doubt[kMostLanes];
   HWY_ALIGN std::int32_t bottom[kMostLanes], top[kMostLanes], first_row[kMostLanes], last_row[kMostLanes],
-      first_crossed[kMostLanes], end_crossed[kMostLanes], first_tile[kMostLanes], last_tile[kMostLanes],
-      kind[kMostLanes], falls[kMostLanes], rightwards[kMostLanes], matters[kMostLanes];
+      first_crossed[kMostLanes], end_crossed[kMostLanes], first_whole[kMostLanes], end_whole[kMostLanes],
+      first_tile[kMostLanes], last_tile[kMostLanes], kind[kMostLanes], falls[kMostLanes],
+      rightwards[kMostLanes], matters[kMostLanes];
 
   static std::int16_t narrow(std::int32_t v) { return static_cast<std::int16_t>(v); }
   BoundaryEdge edge(std::size_t i) const {
@@ -36,14 +38,18 @@ struct Prepared {
             .slope = slope[i],
             .left = left[i],
             .right = right[i],
-            .reach = reach[i],
+            .reach_left = reach_left[i],
+            .reach_right = reach_right[i],
             .doubt = doubt[i],
+            .end_doubt = end_doubt[i],
             .bottom = bottom[i],
             .top = top[i],
             .first_row = narrow(first_row[i]),
             .last_row = narrow(last_row[i]),
             .first_crossed = narrow(first_crossed[i]),
             .end_crossed = narrow(end_crossed[i]),
+            .first_whole = narrow(first_whole[i]),
+            .end_whole = narrow(end_whole[i]),
             .first_tile = narrow(first_tile[i]),
             .last_tile = narrow(last_tile[i]),
             .kind = static_cast<EdgeSlope>(kind[i]),
@@ -72,8 +78,8 @@ HWY_INLINE void store(hn::Mask<Doubles> mask, std::int32_t* to) {
   store(hn::IfThenElseZero(mask, set(1.0)), to);
 }
 
-HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeBuffer& buffer,
-                             Prepared& out) {
+HWY_INLINE void prepareLanes(const GridLines& lines, const GridSweeps* sweeps, std::size_t at,
+                             const EdgeBuffer& buffer, Prepared& out) {
   constexpr double kRow = kPixel * kTileHeight, kColumn = kPixel * kTileWidth;
   const double end_x = buffer.width * kPixel, end_y = buffer.height * kPixel, columns = end_x / kColumn;
   const auto from_x = hn::LoadU(kDoubles, lines.from_x.data() + at),
@@ -84,8 +90,15 @@ HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeB
   const auto x0 = clamp(from_x, -kLargestGrid, kLargestGrid), x1 = clamp(to_x, -kLargestGrid, kLargestGrid),
              y0 = clamp(from_y, -kLargestGrid, kLargestGrid), y1 = clamp(to_y, -kLargestGrid, kLargestGrid);
   const auto bottom = hn::Min(y0, y1), top = hn::Max(y0, y1);
-  const auto left = hn::Sub(hn::Min(x0, x1), set(kMargin)), right = hn::Add(hn::Max(x0, x1), set(kMargin));
-  const auto touched_bottom = hn::Sub(bottom, set(kMargin)), touched_top = hn::Add(top, set(kMargin));
+  const auto sweepOf = [&](const std::vector<double> GridSweeps::*side) HWY_ATTR {
+    return sweeps == nullptr ? set(0.0) : hn::LoadU(kDoubles, (sweeps->*side).data() + at);
+  };
+  const auto leftwards = sweepOf(&GridSweeps::left), rightwards = sweepOf(&GridSweeps::right),
+             downwards = sweepOf(&GridSweeps::down), upwards = sweepOf(&GridSweeps::up);
+  const auto left = hn::Sub(hn::Min(x0, x1), hn::Add(leftwards, set(kMargin))),
+             right = hn::Add(hn::Max(x0, x1), hn::Add(rightwards, set(kMargin)));
+  const auto touched_bottom = hn::Sub(bottom, hn::Add(downwards, set(kMargin))),
+             touched_top = hn::Add(top, hn::Add(upwards, set(kMargin)));
   store(hn::And(hn::And(hn::Ge(touched_top, set(0.0)), hn::Lt(touched_bottom, set(end_y))),
                 hn::Lt(left, set(end_x))),
         out.matters);
@@ -101,6 +114,8 @@ HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeB
   store(rowOf(touched_top), out.last_row);
   store(rowAfter(bottom), out.first_crossed);
   store(rowAfter(top), out.end_crossed);
+  store(rowOf(hn::Add(bottom, set(kPixel))), out.first_whole);
+  store(rowOf(hn::Sub(top, set(1.0))), out.end_whole);
   // What single precision loses of a place is less than two units.
   const auto columnOf = [&](DoublesV x) HWY_ATTR {
     return clamp(hn::Floor(hn::Mul(x, set(1.0 / kColumn))), -1.0, std::floor(columns));
@@ -124,19 +139,36 @@ HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeB
   hn::Store(hn::IfThenElse(level, from_y, x), kDoubles, out.x);
   hn::Store(slope, kDoubles, out.slope);
   const auto widest = set(2.0 * kBeyond + end_x), margin = set(kMargin);
-  const auto reach = hn::Min(widest, hn::Mul(hn::Add(steepness, set(3.0)), margin));
-  store(hn::IfThenElse(level, widest, reach), out.reach);
+  const auto reach = hn::Mul(hn::Add(steepness, set(3.0)), margin);
+  const auto reachTo = [&](DoublesV swept) HWY_ATTR {
+    return hn::IfThenElse(level, widest, hn::Min(widest, hn::Add(reach, swept)));
+  };
+  store(reachTo(sweepOf(&GridSweeps::before)), out.reach_left);
+  store(reachTo(sweepOf(&GridSweeps::behind)), out.reach_right);
   const auto over = [](DoublesV length) HWY_ATTR { return hn::Div(set(4.0 * kPixel), length); };
   const auto beside = hn::Mul(hn::Add(hn::Add(steepness, set(1.0)), over(hn::Abs(dy))), margin);
   const auto along = hn::Mul(margin, hn::Add(set(1.0), over(hn::Max(hn::Abs(dx), set(1.0)))));
-  store(hn::IfThenElse(level, along, hn::Min(widest, hn::Add(beside, set(2.0)))), out.doubt);
+  const auto doubt = hn::IfThenElse(level, along, hn::Min(widest, hn::Add(beside, set(2.0))));
+  store(doubt, out.doubt);
+  // The line of a swept edge goes on beyond its ends, and is known the less the farther it goes. It may meet
+  // the pixels whose centres are so near to it.
+  const auto swept_x = hn::Max(leftwards, rightwards), swept_y = hn::Max(downwards, upwards);
+  const auto off_line = [&](DoublesV swept, DoublesV length) HWY_ATTR {
+    const auto beyond = hn::Div(hn::Add(swept, set(kPixel)), hn::Max(hn::Abs(length), set(1.0)));
+    return hn::Add(set(0.5 * kPixel), hn::Mul(hn::Mul(set(3.0), margin), beyond));
+  };
+  const auto on_line = hn::IfThenElse(level, off_line(swept_x, dx),
+                                      hn::Mul(hn::Add(steepness, set(1.0)), off_line(swept_y, dy)));
+  const auto unswept = hn::Eq(hn::Max(swept_x, swept_y), set(0.0));
+  store(hn::Min(widest, hn::Add(doubt, hn::IfThenZeroElse(unswept, on_line))), out.end_doubt);
 }
 
-void prepareAll(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges) {
+void prepareAll(const GridLines& lines, const GridSweeps* sweeps, const EdgeBuffer& buffer,
+                std::span<BoundaryEdge> edges) {
   const std::size_t lanes = hn::Lanes(kDoubles);
   Prepared prepared;
   for (std::size_t first = 0; first < edges.size(); first += lanes) {
-    prepareLanes(lines, first, buffer, prepared);
+    prepareLanes(lines, sweeps, first, buffer, prepared);
     const std::size_t count = std::min(lanes, edges.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       edges[first + i] = prepared.edge(i);
@@ -153,8 +185,9 @@ namespace sightline::occlusion {
 
 HWY_EXPORT(prepareAll);
 
-void prepareEdges(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges) {
-  HWY_DYNAMIC_DISPATCH(prepareAll)(lines, buffer, edges);
+void prepareEdges(const GridLines& lines, const GridSweeps* sweeps, const EdgeBuffer& buffer,
+                  std::span<BoundaryEdge> edges) {
+  HWY_DYNAMIC_DISPATCH(prepareAll)(lines, sweeps, buffer, edges);
 }
 
 }  // namespace sightline::occlusion

@@ -46,14 +46,17 @@ struct BoundaryEdge {
   // y.
   double x;
   double slope;       // change of x with y; 0 for a level edge
-  float left, right;  // of the edge with its margin
-  float reach;  // beyond where it crosses the borders of a row, along the row, it may touch pixels so far
+  float left, right;  // of what it may touch
+  // Beyond where it crosses the borders of a row, along the row, it may touch pixels so far.
+  float reach_left, reach_right;
   // So near to the edge, along the middle of a row, or of a level edge upwards and downwards, it is unknown
   // on which side a pixel's centre is: see "The pixel" in docs/conservative.md.
   float doubt;
+  float end_doubt;                          // the same in rows that it does not cross from border to border
   std::int32_t bottom, top;                 // of the edge, moved into the buffer
   std::int16_t first_row, last_row;         // that it may touch
   std::int16_t first_crossed, end_crossed;  // whose middle it crosses
+  std::int16_t first_whole, end_whole;      // that it crosses from border to border
   std::int16_t first_tile, last_tile;       // columns of tiles that it may touch; -1: left of the buffer
   EdgeSlope kind;
   bool falls, rightwards;  // from its first point to its second one
@@ -97,7 +100,27 @@ struct GridLines {
   }
 };
 
-// Prepares the first lines, one for each of `edges`. Every instruction set gives the same bits.
-void prepareEdges(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges);
+// How far lines are swept as the eye moves through a ViewerRegion, at least 0, in 256ths of a pixel.
+struct GridSweeps {
+  // Nothing of a line gets farther to the left, to the right, down or up than this.
+  std::vector<double> left{}, right{}, down{}, up{};
+  // And along a row, nothing of it gets farther than this to the left or right of the line before, which goes
+  // on beyond its ends. Of a level line this has no meaning.
+  std::vector<double> before{}, behind{};
+
+  // Makes room for so many.
+  void reserve(std::size_t count) {
+    if (left.size() < count + kMostLanes) {
+      for (std::vector<double>* list : {&left, &right, &down, &up, &before, &behind}) {
+        list->resize(2 * count + kMostLanes);
+      }
+    }
+  }
+};
+
+// Prepares the first lines, one for each of `edges`. sweeps: of these lines; null: they stay where they are.
+// Every instruction set gives the same bits.
+void prepareEdges(const GridLines& lines, const GridSweeps* sweeps, const EdgeBuffer& buffer,
+                  std::span<BoundaryEdge> edges);
 
 }  // namespace sightline::occlusion

@@ -14,6 +14,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr CameraPlaces kNoCamera{};
+
 // Does what PixelView and ChainEdges::pixelOf() do, with the same bits, and a point in each lane.
 class PointProjection {
  public:
@@ -24,14 +26,20 @@ class PointProjection {
       : view_(view), clip_depth_(clip_depth) {}
 
   // Returns whether none of the points is nearer than the clip depth.
+  // camera: null, or where to put their x, y and z in camera space.
   HWY_INLINE bool project(const float* x, const float* y, const float* z, std::size_t count, double* pixel_x,
-                          double* pixel_y) const {
+                          double* pixel_y, const CameraPlaces& camera) const {
     const DoublesV from_eye[3] = {load(x, view_.eye.x), load(y, view_.eye.y), load(z, view_.eye.z)};
     const DoublesV depth = along(view_.forward, from_eye);
+    const DoublesV right = along(view_.right, from_eye), up = along(view_.up, from_eye);
     const DoublesV inverse = view_.orthographic ? set(1.0) : hn::Div(set(1.0), depth);
-    hn::StoreU(place(along(view_.right, from_eye), inverse, view_.scale_x, view_.middle_x), kDoubles,
-               pixel_x);
-    hn::StoreU(place(along(view_.up, from_eye), inverse, view_.scale_y, view_.middle_y), kDoubles, pixel_y);
+    hn::StoreU(place(right, inverse, view_.scale_x, view_.middle_x), kDoubles, pixel_x);
+    hn::StoreU(place(up, inverse, view_.scale_y, view_.middle_y), kDoubles, pixel_y);
+    if (camera.x != nullptr) {
+      hn::StoreU(right, kDoubles, camera.x);
+      hn::StoreU(up, kDoubles, camera.y);
+      hn::StoreU(depth, kDoubles, camera.z);
+    }
     return hn::AllTrue(kDoubles,
                        hn::Or(hn::Ge(depth, set(clip_depth_)), hn::Not(hn::FirstN(kDoubles, count))));
   }
@@ -59,17 +67,18 @@ class PointProjection {
 
 // ends: as in ChainEdges. Returns whether none of them is nearer than the clip depth; the lines of those that
 // are have no meaning.
+// swept: null, or receives the same ends in camera space.
 bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
-                 GridLines& lines) {
+                 GridLines& lines, SweptLines* swept) {
   const PointProjection projection(view, clip_depth);
   const std::size_t lanes = hn::Lanes(PointProjection::Doubles());
   bool all = true;
   for (std::size_t i = 0; i < count; i += lanes) {
     const std::size_t used = std::min(lanes, count - i);
     all &= projection.project(ends[0] + i, ends[1] + i, ends[2] + i, used, lines.from_x.data() + i,
-                              lines.from_y.data() + i);
+                              lines.from_y.data() + i, swept != nullptr ? swept->from.at(i) : kNoCamera);
     all &= projection.project(ends[3] + i, ends[4] + i, ends[5] + i, used, lines.to_x.data() + i,
-                              lines.to_y.data() + i);
+                              lines.to_y.data() + i, swept != nullptr ? swept->to.at(i) : kNoCamera);
   }
   return all;
 }
@@ -89,6 +98,7 @@ void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip
   view_ = view;
   clip_depth_ = clip_depth;
   buffer_ = buffer;
+  sweeps_ = view.viewers.isMore();
   chains_.clear();
   cuts_.clear();
   count_ = 0;
@@ -125,13 +135,13 @@ GridPoint ChainEdges::pixelOf(const Vec3d& camera) const {
 }
 
 // Where an edge crosses the clip plane; the same from both sides.
-GridPoint ChainEdges::cutPoint(const Vec3f& a, const Vec3f& b) const {
+Vec3d ChainEdges::cutPoint(const Vec3f& a, const Vec3f& b) const {
   const bool ascending = std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   const Vec3d from = toCamera(ascending ? a : b), to = toCamera(ascending ? b : a);
   const double t = (clip_depth_ - from.z) / (to.z - from.z);
   Vec3d point = from + (to - from) * t;
   point.z = clip_depth_;
-  return pixelOf(point);
+  return point;
 }
 
 void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value) {
@@ -143,7 +153,7 @@ void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t
     return;
   }
   // From where the border of the triangle leaves to where it comes back.
-  GridPoint from, to;
+  Vec3d from, to;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     if (shows[k] != shows[next]) {
@@ -162,34 +172,98 @@ void ChainEdges::clip(std::uint32_t edge) {
   const Vec3d from = toCamera(a), to = toCamera(b);
   const bool from_shows = from.z >= clip_depth_, to_shows = to.z >= clip_depth_;
   if (from_shows || to_shows) {
-    lines_.set(edge, from_shows ? pixelOf(from) : cutPoint(a, b), to_shows ? pixelOf(to) : cutPoint(a, b));
+    setLine(edge, from_shows ? from : cutPoint(a, b), to_shows ? to : cutPoint(a, b));
   } else {
     // To the right of the buffer, where no edge matters.
     constexpr GridPoint kNowhere{kLargestGrid, 0.0};
     lines_.set(edge, kNowhere, kNowhere);
+    if (sweeps_) {
+      constexpr double kFarAway = 1e30;
+      swept_.set(edge, {kFarAway, 0.0, 1.0}, {kFarAway, 0.0, 1.0});
+    }
+  }
+}
+
+// from, to: camera space, not nearer than the clip depth.
+void ChainEdges::setLine(std::uint32_t edge, const Vec3d& from, const Vec3d& to) {
+  lines_.set(edge, pixelOf(from), pixelOf(to));
+  if (sweeps_) {
+    swept_.set(edge, from, to);
+  }
+}
+
+void ChainEdges::divideSwept() {
+  constexpr double kRatio = 3.0;
+  constexpr std::uint32_t kMostPieces = 8;
+  double nearer = view_.viewers.radius;
+  nearer += std::max(0.0, std::max(view_.viewers.offsets[0].z, view_.viewers.offsets[1].z));
+  const std::uint32_t whole = count_;
+  for (std::uint32_t edge = 0; edge < whole; ++edge) {
+    const Vec3d from = swept_.from.point(edge), to = swept_.to.point(edge);
+    const double nearest = std::min(from.z, to.z) - nearer, farthest = std::max(from.z, to.z) - nearer;
+    const double least = std::max(nearest, 0.05 * clip_depth_);
+    if (!(farthest > kRatio * least)) {
+      continue;
+    }
+    lines_.reserve(count_ + kMostPieces);
+    swept_.reserve(count_ + kMostPieces);
+    // From the far end on.
+    const bool ascending = to.z > from.z;
+    const Vec3d far_end = ascending ? to : from, near_end = ascending ? from : to;
+    Rest rest{edge, count_, 0};
+    Vec3d end = far_end;
+    double depth = farthest;
+    for (std::uint32_t piece = 0; piece + 1 < kMostPieces && depth > kRatio * least; ++piece) {
+      depth /= kRatio;
+      const double t = (depth + nearer - near_end.z) / (far_end.z - near_end.z);
+      const Vec3d next = near_end + (far_end - near_end) * t;
+      setLine(count_++, ascending ? next : end, ascending ? end : next);
+      ++rest.count;
+      end = next;
+    }
+    setLine(edge, ascending ? near_end : end, ascending ? end : near_end);
+    rests_.push_back(rest);
   }
 }
 
 std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   lines_.reserve(count_);
+  if (sweeps_) {
+    swept_.reserve(count_);
+  }
   const std::array<const float*, kCoordinates> ends{ends_[0].data(), ends_[1].data(), ends_[2].data(),
                                                     ends_[3].data(), ends_[4].data(), ends_[5].data()};
-  if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_)) {
+  SweptLines* const swept = sweeps_ ? &swept_ : nullptr;
+  if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_, swept)) {
     for (std::uint32_t edge = 0; edge < count_; ++edge) {
       clip(edge);
     }
   }
   for (const Cut& cut : cuts_) {
-    lines_.set(cut.edge, cut.from, cut.to);
+    setLine(cut.edge, cut.from, cut.to);
+  }
+  rests_.clear();
+  if (sweeps_) {
+    divideSwept();
+    findSweeps(view_, clip_depth_, swept_, count_, grid_sweeps_);
   }
   prepared_.resize(std::max<std::size_t>(prepared_.size(), count_));
-  prepareEdges(lines_, buffer_, std::span(prepared_).first(count_));
+  prepareEdges(lines_, sweeps_ ? &grid_sweeps_ : nullptr, buffer_, std::span(prepared_).first(count_));
   const auto before = static_cast<std::uint32_t>(edges_.size());
+  std::size_t rest = 0;
   for (const BoundaryChain& chain : chains_) {
     const auto first = static_cast<std::uint32_t>(edges_.size());
     for (std::uint32_t edge = chain.first; edge < chain.first + chain.count; ++edge) {
       if (prepared_[edge].matters) {
         edges_.push_back(prepared_[edge]);
+      }
+      if (rest < rests_.size() && rests_[rest].edge == edge) {
+        for (std::uint32_t piece = 0; piece < rests_[rest].count; ++piece) {
+          if (prepared_[rests_[rest].first + piece].matters) {
+            edges_.push_back(prepared_[rests_[rest].first + piece]);
+          }
+        }
+        ++rest;
       }
     }
     if (edges_.size() > first) {

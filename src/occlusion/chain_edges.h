@@ -9,6 +9,7 @@
 
 #include "sightline/occluders/surface_set.h"
 #include "src/occlusion/boundary_edge.h"
+#include "src/occlusion/swept_lines.h"
 #include "src/scene/pixel_view.h"
 
 namespace sightline::occlusion {
@@ -38,14 +39,16 @@ class ChainEdges {
   // The line along which a triangle is cut, in place of one of these.
   struct Cut {
     std::uint32_t edge = 0;
-    GridPoint from, to;
+    Vec3d from, to;  // camera space
   };
 
   void makeRoom(std::size_t more);
   void clip(std::uint32_t edge);
+  void divideSwept();
+  void setLine(std::uint32_t edge, const Vec3d& from, const Vec3d& to);
   Vec3d toCamera(const Vec3f& point) const { return view_.toCamera(Vec3d(point) - view_.eye); }
   GridPoint pixelOf(const Vec3d& camera) const;
-  GridPoint cutPoint(const Vec3f& a, const Vec3f& b) const;
+  Vec3d cutPoint(const Vec3f& a, const Vec3f& b) const;
 
   const SurfaceSet* set_ = nullptr;
   PixelView view_;
@@ -57,6 +60,15 @@ class ChainEdges {
   std::uint32_t count_ = 0;  // of ends_ that are used
   std::vector<Cut> cuts_;
   GridLines lines_;
+  bool sweeps_ = false;  // the view is drawn for more than one viewer
+  SweptLines swept_;     // the same lines, if it is
+  // Edges that are swept much farther at one end than at the other are divided: `count` pieces behind the
+  // other lines are the rest of `edge`; ascending.
+  struct Rest {
+    std::uint32_t edge = 0, first = 0, count = 0;
+  };
+  std::vector<Rest> rests_;
+  GridSweeps grid_sweeps_;
   std::vector<BoundaryEdge> prepared_;
 
   std::vector<BoundaryEdge> edges_;

@@ -57,9 +57,9 @@ void DepthPyramid::build(const View& view, const OccluderSet& set, std::span<con
   finish(parallel_for);
 }
 
-void DepthPyramid::begin(const View& view) {
+void DepthPyramid::begin(const View& view, const ViewerRegion& viewers) {
   const DepthBufferView buffer = impl_->raster.depthBuffer();
-  impl_->raster.begin(view);
+  impl_->raster.begin(view, viewers);
   impl_->view = OutlineView(PixelView(view, buffer.width, buffer.height));
   impl_->projection = BoxProjection(impl_->view.view, buffer.width, buffer.height);
   impl_->finished = false;

@@ -100,7 +100,7 @@ class EdgeRows {
   template <typename Use>
   HWY_INLINE void forSteepRows(std::int32_t first, std::int32_t last, Use&& use) const {
     const auto step = hn::Set(kPlaces, static_cast<float>(edge_.slope * kPixel));
-    const auto doubt = hn::Set(kPlaces, edge_.doubt);
+    const auto doubt = hn::Set(kPlaces, edge_.doubt), end_doubt = hn::Set(kPlaces, edge_.end_doubt);
     forTileRows(first, last, [&](std::int32_t tile_row, double x) HWY_ATTR {
       const double place = std::min(std::max(x, -kBeyond), last_place_);
       const auto base = hn::Set(kPlaces, static_cast<float>(place));
@@ -108,7 +108,7 @@ class EdgeRows {
         const auto row = hn::Iota(kPlaces, static_cast<float>(lane));
         const auto below = hn::Add(hn::Mul(row, step), base), above = hn::Add(below, step);
         const auto middle = hn::Mul(hn::Add(below, above), hn::Set(kPlaces, 0.5f));
-        useRows(tile_row, lane, below, above, middle, doubt, use);
+        useRows(tile_row, lane, below, above, middle, doubt, end_doubt, use);
       });
     });
   }
@@ -133,7 +133,8 @@ class EdgeRows {
       }
       forLanes([&](std::int32_t lane) HWY_ATTR {
         useRows(tile_row, lane, hn::Load(kPlaces, below + lane), hn::Load(kPlaces, above + lane),
-                hn::Load(kPlaces, middle + lane), hn::Set(kPlaces, edge_.doubt), use);
+                hn::Load(kPlaces, middle + lane), hn::Set(kPlaces, edge_.doubt),
+                hn::Set(kPlaces, edge_.end_doubt), use);
       });
     });
   }
@@ -151,9 +152,9 @@ class EdgeRows {
         const auto row = hn::Iota(kPlaces, static_cast<float>(tile_row * kTileHeight + lane) + 0.5f);
         const auto height = hn::Sub(hn::Mul(row, hn::Set(kPlaces, kGridStep)), at);
         const auto middle = hn::IfThenElse(hn::Gt(height, hn::Zero(kPlaces)), above, below);
-        const auto near = hn::Le(hn::Abs(height), hn::Set(kPlaces, edge_.doubt));
-        useRows(tile_row, lane, left, left, middle,
-                hn::IfThenElseZero(near, hn::Set(kPlaces, 2.0f * edge_.reach)), use);
+        const auto near = hn::Le(hn::Abs(height), hn::Set(kPlaces, edge_.end_doubt));
+        const auto doubt = hn::IfThenElseZero(near, hn::Set(kPlaces, 2.0f * edge_.reach_right));
+        useRows(tile_row, lane, left, left, middle, doubt, doubt, use);
       });
     });
   }
@@ -167,17 +168,19 @@ class EdgeRows {
 
   template <typename Use>
   HWY_INLINE void useRows(std::int32_t tile_row, std::int32_t lane, PlacesV below, PlacesV above,
-                          PlacesV middle, PlacesV doubt, Use&& use) const {
+                          PlacesV middle, PlacesV doubt, PlacesV end_doubt, Use&& use) const {
     const auto rows = hn::Add(hn::Set(kNumbers, tile_row * kTileHeight + lane), hn::Iota(kNumbers, 0));
     const auto among = [rows](std::int32_t first, std::int32_t end) HWY_ATTR {
       return hn::RebindMask(
           kPlaces, hn::And(hn::Gt(rows, hn::Set(kNumbers, first - 1)), hn::Lt(rows, hn::Set(kNumbers, end))));
     };
-    const auto reach = hn::Set(kPlaces, edge_.reach);
-    const auto from = hn::Max(hn::Sub(hn::Min(below, above), reach), hn::Set(kPlaces, edge_.left)),
-               to = hn::Min(hn::Add(hn::Max(below, above), reach), hn::Set(kPlaces, edge_.right));
+    const auto from = hn::Max(hn::Sub(hn::Min(below, above), hn::Set(kPlaces, edge_.reach_left)),
+                              hn::Set(kPlaces, edge_.left)),
+               to = hn::Min(hn::Add(hn::Max(below, above), hn::Set(kPlaces, edge_.reach_right)),
+                            hn::Set(kPlaces, edge_.right));
+    const auto in_doubt = hn::IfThenElse(among(edge_.first_whole, edge_.end_whole), doubt, end_doubt);
     use(tile_row, lane, from, to, among(edge_.first_row, edge_.last_row + 1),
-        among(edge_.first_crossed, edge_.end_crossed), middle, doubt);
+        among(edge_.first_crossed, edge_.end_crossed), middle, in_doubt);
   }
 
   const BoundaryEdge& edge_;

@@ -125,8 +125,8 @@ Rasteriser::~Rasteriser() = default;
 Rasteriser::Rasteriser(Rasteriser&&) noexcept = default;
 Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 
-void Rasteriser::begin(const View& view) {
-  impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height);
+void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
+  impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
   fillBuffer(impl_->reciprocal_depth, kUncovered);
   impl_->used.clear();
   impl_->stats = {};
@@ -134,7 +134,9 @@ void Rasteriser::begin(const View& view) {
 
 void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
                       const ParallelFor& parallel_for) {
-  impl_->draw(set, chosen, parallel_for);
+  if (!impl_->view.viewers.isMore()) {
+    impl_->draw(set, chosen, parallel_for);
+  }
 }
 
 void Rasteriser::reserve(const SurfaceSet& surfaces) {

@@ -33,6 +33,7 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<
   min_pixels_ = min_pixels;
   target_ = target;
   clip_depth_ = view.near * (1.0 + kNearMargin);
+  setViewers();
   candidates_.clear();
   boxes_.clear();
   listed_.resize(set.parts.size());
@@ -56,6 +57,38 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<
     }
   }
   sortParts();
+}
+
+void SurfaceView::setViewers() {
+  constexpr double kNobody = std::numeric_limits<double>::infinity();
+  viewers_min_ = Vec3d(kNobody, kNobody, kNobody);
+  viewers_max_ = -viewers_min_;
+  const ViewerRegion& viewers = view_.viewers;
+  if (viewers.isMore()) {
+    const double around = tooNear();
+    viewers_min_ = min(Vec3d(), min(viewers.offsets[0], viewers.offsets[1])) - Vec3d(around, around, around);
+    viewers_max_ = max(Vec3d(), max(viewers.offsets[0], viewers.offsets[1])) + Vec3d(around, around, around);
+  }
+}
+
+// What is so near to the triangle of a ViewerRegion may be too near to one of the viewers; camera space.
+double SurfaceView::tooNear() const {
+  return (view_.viewers.radius + view_.viewers.near_distance) * (1.0 + kNearMargin);
+}
+
+// Whether all of a slab is farther from all viewers than that. thickness: before the plane.
+bool SurfaceView::clearOfViewers(const Plane& support, double thickness) const {
+  const Vec3d normal = view_.normalToCamera(support.normal);
+  const double at_eye = support.evaluate(view_.eye);
+  double lowest = at_eye, highest = at_eye, size = 0.0;
+  for (const Vec3d& offset : view_.viewers.offsets) {
+    const double height = at_eye + dot(normal, offset);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+    size += maxComponent(abs(offset));
+  }
+  const double around = (tooNear() + kNearMargin * size) * view_.stretch;
+  return lowest > thickness + around || highest < -around;
 }
 
 // Sets candidates_ to the parts of the objects that may be large enough.
@@ -176,7 +209,10 @@ void SurfaceView::imagesOf(std::span<const ShownPatch> patches, double min_pixel
     image.rectangle = extent.rectangle;
     image.nearest = nearestOf(extent);
     image.flat = set_->patches[image.patch].thickness <= kFlat * std::max(extent.nearest, clip_depth_);
-    image.sign = image.flat && !extent.cut ? patches[i].side : 0;
+    const SurfacePatch& patch = set_->patches[image.patch];
+    const bool whole =
+        !extent.cut && (!extent.among_viewers || clearOfViewers(patch.support, patch.thickness));
+    image.sign = image.flat && whole ? patches[i].side : 0;
     image.farthest = extent.farthest;
     images.push_back(image);
   }
@@ -238,6 +274,9 @@ bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, Clust
   image.sign = height > 0.0 ? 1 : cluster.double_sided ? -1 : 0;
   BoxExtent extent;
   if (image.sign == 0 || !extentOf(set_->cluster_bounds[number], box, extent)) {
+    return false;
+  }
+  if (extent.among_viewers && !clearOfViewers(cluster.support, cluster.thickness)) {
     return false;
   }
   farthest = extent.farthest;
@@ -309,7 +348,7 @@ bool SurfaceView::extentOf(const Box& box, const PixelBox& image, BoxExtent& ext
     extent.nearest = view_.orthographic ? -image.nearest : 1.0 / image.nearest;
     extent.farthest = view_.orthographic ? -image.farthest : 1.0 / image.farthest;
     extent.rectangle = {image.x0, image.y0, image.x1 + 1, image.y1 + 1};
-    if (extent.nearest > clip_depth_) {
+    if (extent.nearest > clip_depth_ && extent.nearest > viewers_max_.z) {
       return true;
     }
   }
@@ -328,6 +367,9 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
     return false;
   }
   extent.cut = !(extent.nearest > clip_depth_);
+  const Vec3d low = middle - size, high = middle + size;
+  extent.among_viewers = low.x < viewers_max_.x && high.x > viewers_min_.x && low.y < viewers_max_.y &&
+                         high.y > viewers_min_.y && low.z < viewers_max_.z && high.z > viewers_min_.z;
   extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);

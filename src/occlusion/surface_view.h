@@ -18,6 +18,7 @@ struct BoxExtent {
   double nearest = 0.0, farthest = 0.0;  // depths, metres
   bool cut = false;                      // it reaches the depth at which surfaces are clipped
   bool inexact = false;                  // nothing can be told of its image
+  bool among_viewers = false;            // something of it may be too near to one of the viewers
   PixelRectangle rectangle;
 };
 
@@ -90,6 +91,9 @@ class SurfaceView {
 
  private:
   void listParts(std::span<const ObjectId> candidates);
+  void setViewers();
+  double tooNear() const;
+  bool clearOfViewers(const Plane& support, double thickness) const;
   double smallestOf(const BoxExtent& object) const;
   void sortParts();
   float nearestOf(const BoxExtent& extent) const;
@@ -109,6 +113,9 @@ class SurfaceView {
   double min_pixels_ = 0.0;
   DepthTarget target_;
   double clip_depth_ = 0.0;
+  // The box around all places in camera space that are too near to one of several viewers; empty if there is
+  // one.
+  Vec3d viewers_min_, viewers_max_;
   BoxProjection projection_;
   bool batches_ = false;  // projection_ is exact enough for all of the set
   std::vector<ClusterImage> clusters_;

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "sightline/math/mat4.h"
+#include "sightline/occlusion/viewer_region.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {
@@ -33,13 +34,17 @@ struct PixelView {
   // Where the forward axis meets the buffer: in its middle, unless the view is off-centre; pixels.
   double middle_x = 0.0, middle_y = 0.0;
   double width = 0.0, height = 0.0;  // of the buffer, pixels
+  // Viewers for whom the buffer is drawn; offsets in camera space.
+  ViewerRegion viewers{};
   // Other than 1 only for geometry in a space of its own, see inSpace().
   double metres = 1.0;    // the length of camera space's unit, a power of two
   double stretch = 1.0;   // unit_x, unit_y and unit_z are at most so long
   bool mirrored = false;  // triangles that are counter-clockwise in that space appear clockwise
 
   PixelView() = default;
-  PixelView(const View& given, std::uint32_t buffer_width, std::uint32_t buffer_height)
+  // region: of the same viewers in scene space.
+  PixelView(const View& given, std::uint32_t buffer_width, std::uint32_t buffer_height,
+            const ViewerRegion& region = {})
       : width(buffer_width), height(buffer_height) {
     View view = given;
     valid_ = makeUsable(view) == nullptr;
@@ -61,6 +66,10 @@ struct PixelView {
     unit_x = across / volume;
     unit_y = cross(forward, right) / volume;
     unit_z = cross(right, up) / volume;
+    viewers = region;
+    for (Vec3d& offset : viewers.offsets) {
+      offset = toCamera(offset);
+    }
   }
 
   // True if all values are finite, and of magnitudes that neither overflow nor underflow in single precision.
@@ -71,10 +80,10 @@ struct PixelView {
       return isFinite(v) && maxComponent(abs(v)) < 2.0 * size;
     };
     const auto scale = [](double s) { return s < kLargestScale && s > 1.0 / kLargestScale; };
-    return valid_ && axis(right, 1.0) && axis(up, 1.0) && axis(forward, 1.0) && axis(unit_x, stretch) &&
-           axis(unit_y, stretch) && axis(unit_z, stretch) && scale(scale_x) && scale(scale_y) &&
-           isFinite(eye) && maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate &&
-           far > near;
+    return valid_ && sane(viewers) && axis(right, 1.0) && axis(up, 1.0) && axis(forward, 1.0) &&
+           axis(unit_x, stretch) && axis(unit_y, stretch) && axis(unit_z, stretch) && scale(scale_x) &&
+           scale(scale_y) && isFinite(eye) && maxComponent(abs(eye)) < kLargestCoordinate &&
+           near < kLargestCoordinate && far > near;
   }
   // The view of geometry that is given in another space: a point p there has the image of scene_from_space p
   // here. Camera space is then so scaled that no vector of that space becomes longer in it. Not sane() unless
@@ -111,6 +120,11 @@ struct PixelView {
     moved.frustum_near = frustum_near / moved.metres;
     moved.near = near / moved.metres;
     moved.far = far / moved.metres;
+    for (Vec3d& offset : moved.viewers.offsets) {
+      offset = offset / moved.metres;
+    }
+    moved.viewers.radius = viewers.radius / moved.metres;
+    moved.viewers.near_distance = viewers.near_distance / moved.metres;
     if (orthographic) {
       moved.scale_x = scale_x * moved.metres;
       moved.scale_y = scale_y * moved.metres;
@@ -147,6 +161,14 @@ struct PixelView {
  private:
   static constexpr double kLargestScale = 0x1p40;
   static constexpr double kLargestStretch = 0x1p12;
+
+  // A region of several viewers needs a perspective view: lines of sight then begin at them.
+  bool sane(const ViewerRegion& region) const {
+    const double size = maxComponent(max(abs(region.offsets[0]), abs(region.offsets[1])));
+    return !region.isMore() ||
+           (!orthographic && size < kLargestScale && region.radius >= 0.0 && region.radius < kLargestScale &&
+            region.near_distance >= 0.0 && region.near_distance < kLargestScale);
+  }
 
   // 1 for the columns of a rotation, exact up to single precision; otherwise a power of two that no unit
   // vector is stretched beyond. Not positive if there is none.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kWidth = 320, kHeight = 180;
 
-using EdgeBits = std::array<std::uint64_t, 16>;
+using EdgeBits = std::array<std::uint64_t, 20>;
 
 EdgeBits bitsOf(const BoundaryEdge& e) {
   const auto bits = [](auto v) {
@@ -33,14 +33,18 @@ EdgeBits bitsOf(const BoundaryEdge& e) {
           bits(e.slope),
           bits(e.left),
           bits(e.right),
-          bits(e.reach),
+          bits(e.reach_left),
+          bits(e.reach_right),
           bits(e.doubt),
+          bits(e.end_doubt),
           number(e.bottom),
           number(e.top),
           number(e.first_row),
           number(e.last_row),
           number(e.first_crossed),
           number(e.end_crossed),
+          number(e.first_whole),
+          number(e.end_whole),
           number(e.first_tile),
           number(e.last_tile),
           number(e.kind),

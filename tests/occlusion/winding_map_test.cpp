@@ -36,7 +36,7 @@ BoundaryChain addChain(std::span<const GridPoint> points, std::int32_t value, co
     lines.set(i, points[i], points[i + 1]);
   }
   edges.resize(first + count);
-  prepareEdges(lines, buffer, std::span(edges).subspan(first));
+  prepareEdges(lines, nullptr, buffer, std::span(edges).subspan(first));
   std::erase_if(edges, [](const BoundaryEdge& edge) { return !edge.matters; });
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first), value};
 }

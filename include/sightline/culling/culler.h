@@ -33,6 +33,11 @@ struct CullerSettings {
   bool test_objects = true;         // objects of partly visible leaves are tested by their own boxes
   // Only what is in the potentially visible set of the eye's cell is tested, and kept.
   bool visible_sets = false;
+  // More than 1: where the method can (CullingMethod::answersForRegions()), the scene is culled for up to so
+  // many views at once, at most 16: this one and those that the camera is expected to have next, fewer the
+  // faster it moves. As long as it does what was expected, the next frames only compare what was kept with
+  // their frustum (CullStats::held). More is kept, and the frame in which the scene is culled takes longer.
+  std::uint32_t views_at_once = 1;
 };
 
 class Culler {
@@ -72,8 +77,10 @@ class Culler {
   // The value of the statistic of this group and name; 0 where the method has none.
   std::uint64_t statistic(std::string_view group, std::string_view name) const;
   // The depth buffer of the opacity map or the depth pyramid; empty with other methods. Of a left-handed view
-  // it is mirrored.
+  // it is mirrored. It is that of depthBufferView(): of the last view, or of the wider one that was culled
+  // for it and others (CullerSettings::views_at_once).
   DepthBufferView depthBuffer() const;
+  const View& depthBufferView() const;
 
   // For drawing depth buffers and for the depth pyramid's traversal, from now on; answers do not depend on
   // it. Serial at first.

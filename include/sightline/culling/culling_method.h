@@ -72,6 +72,8 @@ struct CullStats {
   // The scene does not fit together, or has changed without reset(): every object was kept, also outside the
   // frustum, and no other count is made.
   bool unfit = false;
+  // The answer was found in an earlier frame (CullerSettings::views_at_once): no other count is made.
+  bool held = false;
   std::uint32_t nodes_visited = 0;     // nodes that were compared with the frustum
   std::uint32_t nodes_tested = 0;      // nodes that the occlusion structure was asked about
   std::uint32_t objects_tested = 0;    // objects that it was asked about
@@ -107,8 +109,10 @@ enum class SurfaceUse : std::uint8_t {
 
 // What a method is told about a frame. All of it is valid until the frame ends.
 struct CullingFrame {
-  View view{};          // validate() accepts it; never left-handed
-  Frustum frustum{};    // of the view
+  View view{};        // validate() accepts it; never left-handed
+  Frustum frustum{};  // of the view
+  // For whom the answers must hold; more than the view's own eye only where answersForRegions().
+  ViewerRegion viewers{};
   bool jumped = false;  // the view has little to do with that of the last frame
   // The chosen occluders of the scene's set and then, where there are any, a set of all that move. A method
   // uses all of them, and counts them all in CullStats::occluders; occludersUsed() names those of the first
@@ -153,6 +157,8 @@ class CullingMethod {
   virtual bool wantsOccluders() const { return traits().occluders; }
   // Whether a convex body counts as one occluder, so that one of its faces is enough.
   virtual bool drawsBodies() const { return false; }
+  // Whether its answers in the next frame can hold for several viewers, CullingFrame::viewers.
+  virtual bool answersForRegions() const { return false; }
 
   // Takes the scene and forgets every frame. scene.hierarchy and scene.occluders are never null here, but
   // may be empty.

@@ -83,7 +83,9 @@ class DepthPyramid {
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
              const ParallelFor& parallel_for = serialFor);
   // Builds in steps: begin() a view, draw() any number of occluders, also of several sets, then finish().
-  void begin(const View& view);
+  // viewers: as in Rasteriser::begin(): what classify() then calls hidden is hidden from all of these, as far
+  // as it lies in the view's volume.
+  void begin(const View& view, const ViewerRegion& viewers = {});
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
   void reserve(const SurfaceSet& surfaces);  // see Rasteriser

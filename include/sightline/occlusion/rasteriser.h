@@ -10,6 +10,7 @@
 #include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
+#include "sightline/occlusion/viewer_region.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
@@ -114,8 +115,9 @@ class Rasteriser {
   Rasteriser(Rasteriser&&) noexcept;
   Rasteriser& operator=(Rasteriser&&) noexcept;
 
-  // Clears the buffer for a view.
-  void begin(const View& view);
+  // Clears the buffer for a view. viewers: what surfaces then cover is hidden from all of these, too.
+  // Occluders of an OccluderSet, which hide from the view's own eye only, are drawn if that is all of them.
+  void begin(const View& view, const ViewerRegion& viewers = {});
   // Draws the chosen occluders. May be called several times, with the same set or others; shared edges are
   // watertight between occluders of one call. The set must outlive the call only.
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,

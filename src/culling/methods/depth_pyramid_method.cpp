@@ -23,6 +23,7 @@ class DepthPyramidMethod final : public CullingMethod {
   MethodTraits traits() const override { return kDepthPyramidTraits; }
   bool wantsOccluders() const override { return surfaces_.wantsOccluders(); }
   bool drawsBodies() const override { return settings_.raster.coverage == nullptr; }
+  bool answersForRegions() const override { return surfaces_.draws() && !surfaces_.wantsOccluders(); }
 
   void prepare(const CullingScene& scene) override {
     scene_ = scene;
@@ -45,7 +46,8 @@ class DepthPyramidMethod final : public CullingMethod {
     if (frame.jumped) {
       traversal_->forget();
     }
-    own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, *frame.parallel_for);
+    pyramid_->begin(frame.view, frame.viewers);
+    own_occluders_ = culling::drawOccluders(*pyramid_, frame.occluders, *frame.parallel_for);
     surfaces_.begin(frame);
     surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
     work_ = surfaces_.work() + surfaces_.drawMoving(*pyramid_, frame);

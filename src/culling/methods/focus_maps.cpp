@@ -158,7 +158,7 @@ double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const Sur
       shown_.push_back(visible[i]);
     }
   }
-  raster_.begin(window.view());
+  raster_.begin(window.view(), frame.viewers);
   double work = drawOccluders(window, frame, surfaces.wantsOccluders() && frame.max_occluders > 0);
   const double pixel_factor = std::sqrt(settings_.magnification);
   work += surfaces.drawOf(raster_, shown_, pixel_factor, budget - work);

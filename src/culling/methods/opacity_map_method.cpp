@@ -50,7 +50,8 @@ class OpacityMapMethod final : public CullingMethod {
     const bool was_suspended = suspended_;
     suspended_ = coverage_->suspended();
     if (!suspended_) {
-      own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, *frame.parallel_for);
+      map_->begin(frame.view);
+      own_occluders_ = culling::drawOccluders(*map_, frame.occluders, *frame.parallel_for);
       surfaces_.begin(frame);
       surfaces_.draw(*map_, frame, !was_suspended);
       surfaces_.drawMoving(*map_, frame);

@@ -61,7 +61,8 @@ const std::vector<Method>& methods() {
                               .budget_us = s.budget_us});
        },
        {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "budget-us", "coherence",
-        "focus", "focus-resolution", "focus-occluder-count", "focus-windows", "focus-worth"}},
+        "views-at-once", "focus", "focus-resolution", "focus-occluder-count", "focus-windows",
+        "focus-worth"}},
       {"visibility-octree", kVisibilityOctreeTraits, [](const Setting&) { return visibilityOctree(); }, {}},
   };
   return kMethods;

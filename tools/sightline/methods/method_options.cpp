@@ -224,6 +224,10 @@ const std::vector<Option>& allOptions() {
        "before the method, all that is not in the baked set of the viewpoint's cell is left out",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.visible_sets; })},
+      {"views-at-once", kOwn, always, kList, kWhenChanged,
+       "cull for so many frames at once, those that the camera is expected to have next; 1: each by itself",
+       whole(
+           1, 16, +[](Setting& s) -> std::uint32_t& { return s.culler.views_at_once; })},
       {"variant", kOwn, always, kList, kHeadline, "of the occlusion tree",
        oneOf(
            kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.variant; })},
