@@ -10,6 +10,7 @@
 
 #include "src/scene/cell_grid.h"
 #include "src/scene/grid_divisions.h"
+#include "src/scene/like_objects.h"
 
 namespace sightline {
 namespace {
@@ -65,6 +66,19 @@ class Piece {
   std::size_t count_ = 0;
 };
 
+// A plane that divides a box, and how its halves are divided: indices into the object's cuts.
+struct Cut {
+  static constexpr std::uint32_t kNone = ~0u;
+
+  int axis = 0;
+  float plane = 0.0f;
+  std::uint32_t corner = kNone;  // one of those that lie in the plane; corners are counted by triangle
+  std::array<std::uint32_t, 2> halves{kNone, kNone};  // kNone: it is not divided
+};
+
+// The first one divides the object's box; none: it is not divided.
+using Cuts = std::vector<Cut>;
+
 // Finds the boxes of one object: in a grid of cells how to divide its box, and then the boxes around the
 // parts of its triangles.
 class Divider {
@@ -73,8 +87,12 @@ class Divider {
       : max_boxes_(std::clamp(settings.max_boxes, 1u, kMaxObjectBoxes)),
         min_saving_(std::max(settings.min_saving, 0.0)) {}
 
-  // Appends the object's boxes to out; nothing if one is enough.
-  void divide(const SceneView& scene, const Object& object, std::vector<Box>& out);
+  // Sets `cuts` to those by which the object's box is divided, and appends its boxes to out; nothing if one
+  // is enough.
+  void divide(const SceneView& scene, const Object& object, Cuts& cuts, std::vector<Box>& out);
+  // Does the same with the cuts of an object like this one, moved to it.
+  void divideLike(const SceneView& scene, const Object& object, const Object& other, const Cuts& cuts,
+                  std::vector<Box>& out);
 
  private:
   std::span<const Vec3f, 3> triangle(std::uint32_t t) const {
@@ -92,9 +110,13 @@ class Divider {
   Box boundsWithin(const Box& box, std::uint32_t t);
   // Which triangles of a list have parts in this half of a box, and a box around those; appends them to
   // lists_.
-  Box halve(std::size_t begin, std::size_t end, const Box& half, const DivisionTree::Node& node, bool upper);
-  // Appends `count` boxes, or fewer, around the parts in a box of the triangles listed from `begin` on.
-  void append(std::uint32_t n, std::uint32_t count, const Box& box, std::size_t begin, std::vector<Box>& out);
+  Box halve(std::size_t begin, std::size_t end, const Box& half, const Cut& cut, bool upper);
+  // Appends the cuts by which a node of divisions_ becomes `count` boxes. Returns the number of the first.
+  std::uint32_t appendCuts(std::uint32_t n, std::uint32_t count, Cuts& cuts) const;
+  // Appends the boxes around the parts of all triangles.
+  void appendBoxes(const Cuts& cuts, std::vector<Box>& out);
+  // The same of those listed from `begin` on, in a box that is divided by a cut and others below it.
+  void append(const Cuts& cuts, std::uint32_t cut, const Box& box, std::size_t begin, std::vector<Box>& out);
 
   std::uint32_t max_boxes_;
   double min_saving_;
@@ -105,6 +127,7 @@ class Divider {
   DivisionTree divisions_;
   Piece piece_;
   std::vector<std::uint32_t> lists_, cut_;  // of triangles
+  Cuts moved_;
 };
 
 bool Divider::read(const SceneView& scene, const Object& object) {
@@ -176,9 +199,8 @@ Box Divider::boundsWithin(const Box& box, std::uint32_t t) {
   return reached;
 }
 
-Box Divider::halve(std::size_t begin, std::size_t end, const Box& half, const DivisionTree::Node& node,
-                   bool upper) {
-  const auto& [axis, plane] = std::tie(node.axis, node.plane);
+Box Divider::halve(std::size_t begin, std::size_t end, const Box& half, const Cut& cut, bool upper) {
+  const auto& [axis, plane] = std::tie(cut.axis, cut.plane);
   Box box;
   cut_.clear();
   for (std::size_t i = begin; i < end; ++i) {
@@ -212,52 +234,87 @@ Box Divider::halve(std::size_t begin, std::size_t end, const Box& half, const Di
   return box;
 }
 
-void Divider::append(std::uint32_t n, std::uint32_t count, const Box& box, std::size_t begin,
-                     std::vector<Box>& out) {
+std::uint32_t Divider::appendCuts(std::uint32_t n, std::uint32_t count, Cuts& cuts) const {
   const DivisionTree::Node& node = divisions_.nodes[n];
   const std::uint32_t in_first = node.in_first[count];
   if (in_first == 0) {
+    return Cut::kNone;
+  }
+  const auto in_plane = std::find_if(corners_.begin(), corners_.end(),
+                                     [&](const Vec3f& corner) { return corner[node.axis] == node.plane; });
+  const auto number = static_cast<std::uint32_t>(cuts.size());
+  cuts.push_back({.axis = node.axis, .plane = node.plane});
+  if (in_plane != corners_.end()) {
+    cuts[number].corner = static_cast<std::uint32_t>(in_plane - corners_.begin());
+  }
+  const std::uint32_t first = appendCuts(node.first_half, in_first, cuts),
+                      second = appendCuts(node.first_half + 1, count - in_first, cuts);
+  cuts[number].halves = {first, second};
+  return number;
+}
+
+void Divider::append(const Cuts& cuts, std::uint32_t number, const Box& box, std::size_t begin,
+                     std::vector<Box>& out) {
+  if (number == Cut::kNone) {
     out.push_back(box);
     return;
   }
-  const std::array<std::uint32_t, 2> counts{in_first, count - in_first};
+  const Cut& cut = cuts[number];
   const std::size_t end = lists_.size();
   for (std::uint32_t h = 0; h < 2; ++h) {
     Box half = box;
-    float& side = (h == 0 ? half.max : half.min)[node.axis];
-    side = h == 0 ? std::min(side, node.plane) : std::max(side, node.plane);
-    const Box part = halve(begin, end, half, node, h == 1);
+    float& side = (h == 0 ? half.max : half.min)[cut.axis];
+    side = h == 0 ? std::min(side, cut.plane) : std::max(side, cut.plane);
+    const Box part = halve(begin, end, half, cut, h == 1);
     if (!part.empty()) {
-      append(node.first_half + h, counts[h], part, end, out);
+      append(cuts, cut.halves[h], part, end, out);
     }
     lists_.resize(end);
   }
 }
 
-void Divider::divide(const SceneView& scene, const Object& object, std::vector<Box>& out) {
+void Divider::appendBoxes(const Cuts& cuts, std::vector<Box>& out) {
+  slack_ = std::ldexp(maxComponent(max(abs(Vec3d(box_.min)), abs(Vec3d(box_.max)))), -44);
+  lists_.resize(bounds_.size());
+  std::iota(lists_.begin(), lists_.end(), 0u);
+  const std::size_t before = out.size();
+  append(cuts, 0, box_, 0, out);
+  if (out.size() < before + 2) {
+    out.resize(before);
+  }
+}
+
+void Divider::divide(const SceneView& scene, const Object& object, Cuts& cuts, std::vector<Box>& out) {
+  cuts.clear();
   if (max_boxes_ < 2 || !object.bounds.wellFormed() || !read(scene, object) || fillsItsBox()) {
     return;
   }
-  slack_ = std::ldexp(maxComponent(max(abs(Vec3d(box_.min)), abs(Vec3d(box_.max)))), -44);
-  const auto triangles = static_cast<std::uint32_t>(bounds_.size());
   const CellGrid grid(box_, corners_);
   // For a mesh of few triangles, more divisions gain little and would take most of the time.
-  const bool many = triangles >= scene::kManyTriangles;
+  const bool many = bounds_.size() >= scene::kManyTriangles;
   scene::findDivisions(grid,
                        {.max_boxes = max_boxes_,
                         .min_saving = min_saving_,
                         .max_divided = many ? DivisionTree::kMaxDivided : DivisionTree::kMaxDivided / 2},
                        divisions_);
-  if (divisions_.boxes < 2) {
+  if (divisions_.boxes > 1) {
+    appendCuts(0, divisions_.boxes, cuts);
+    appendBoxes(cuts, out);
+  }
+}
+
+void Divider::divideLike(const SceneView& scene, const Object& object, const Object& other, const Cuts& cuts,
+                         std::vector<Box>& out) {
+  if (cuts.empty() || !read(scene, object)) {
     return;
   }
-  lists_.resize(triangles);
-  std::iota(lists_.begin(), lists_.end(), 0u);
-  const std::size_t before = out.size();
-  append(0, divisions_.boxes, box_, 0, out);
-  if (out.size() < before + 2) {
-    out.resize(before);
+  moved_ = cuts;
+  for (Cut& cut : moved_) {
+    const double place = double{cut.plane} - other.bounds.min[cut.axis];
+    cut.plane = cut.corner != Cut::kNone ? corners_[cut.corner][cut.axis]
+                                         : static_cast<float>(object.bounds.min[cut.axis] + place);
   }
+  appendBoxes(moved_, out);
 }
 
 }  // namespace
@@ -275,10 +332,24 @@ ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& s
                             const ParallelFor& parallel_for) {
   const auto count = static_cast<std::uint32_t>(scene.objects.size());
   std::vector<std::vector<Box>> of_object(count);
-  parallel_for(count, [&](std::uint32_t begin, std::uint32_t end) {
-    Divider divider(settings);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      divider.divide(scene, scene.objects[i], of_object[i]);
+  const std::vector<std::uint32_t> like = scene::findLikeObjects(scene, parallel_for);
+  std::vector<Cuts> cuts(count);  // of objects that are like none before
+  const auto forObjects = [&](const auto& divide) {
+    parallel_for(count, [&](std::uint32_t begin, std::uint32_t end) {
+      Divider divider(settings);
+      for (std::uint32_t i = begin; i < end; ++i) {
+        divide(divider, i);
+      }
+    });
+  };
+  forObjects([&](Divider& divider, std::uint32_t i) {
+    if (like[i] == i) {
+      divider.divide(scene, scene.objects[i], cuts[i], of_object[i]);
+    }
+  });
+  forObjects([&](Divider& divider, std::uint32_t i) {
+    if (like[i] != i) {
+      divider.divideLike(scene, scene.objects[i], scene.objects[like[i]], cuts[like[i]], of_object[i]);
     }
   });
   ObjectBoxes found;

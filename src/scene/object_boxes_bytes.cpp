@@ -7,7 +7,7 @@ namespace sightline {
 namespace {
 
 // The last two letters: raise them with every change of findObjectBoxes().
-constexpr base::ArraysHead kBoxesHead{{'S', 'L', 'b', 'o', 'x', 'e', '0', '2'}, sizeof(Box)};
+constexpr base::ArraysHead kBoxesHead{{'S', 'L', 'b', 'o', 'x', 'e', '0', '3'}, sizeof(Box)};
 
 bool areSound(const ObjectBoxes& boxes, std::uint32_t objects) {
   if (!base::areRowStarts(boxes.first, objects, boxes.boxes.size())) {

@@ -4,11 +4,14 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
 #include <random>
+#include <utility>
 
+#include "src/scene/like_objects.h"
 #include "tests/support/cut_off.h"
 
 namespace sightline {
@@ -432,6 +435,74 @@ TEST(ObjectBoxes, DoNotDependOnTheThreads) {
   EXPECT_FALSE(serial.boxes.empty());
   EXPECT_EQ(serial.first, other.first);
   EXPECT_EQ(serial.boxes, other.boxes);
+}
+
+// Objects of triangles with few bits, three times each: as they are, far away, and far away with corners that
+// are moved a little.
+Shapes copiedShapes(std::mt19937& random) {
+  std::uniform_int_distribution<int> place(-640, 640), nudge(-1, 1);
+  Shapes shapes;
+  for (int o = 0; o < 30; ++o) {
+    std::array<float, 180> coordinates;
+    for (float& coordinate : coordinates) {
+      coordinate = static_cast<float>(place(random)) / 64.0f;
+    }
+    for (const auto& [offset, moved] : {std::pair(0.0f, 0), {256.0f, 0}, {-512.0f, 1}}) {
+      std::size_t next = 0;
+      shapes.addTriangles(20, [&] {
+        return coordinates[next++] + offset + static_cast<float>(moved * nudge(random)) / 128.0f;
+      });
+      shapes.endObject();
+    }
+  }
+  return shapes;
+}
+
+TEST(ObjectBoxes, OfCopiesAreDividedAlike) {
+  std::mt19937 random(5);
+  const Shapes shapes = copiedShapes(random);
+  const ObjectBoxes found = findObjectBoxes(shapes.scene.view());
+  expectHeld(shapes, found);
+  std::size_t of_moved = 0;
+  for (std::uint32_t o = 0; o < shapes.scene.objects.size(); o += 3) {
+    const std::span<const Box> own = found.of(ObjectId(o)), copied = found.of(ObjectId(o + 1));
+    ASSERT_EQ(own.size(), copied.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const Vec3f offset(256.0f, 256.0f, 256.0f);
+      EXPECT_LT(maxComponent(abs(own[i].min + offset - copied[i].min)), 1e-4f);
+      EXPECT_LT(maxComponent(abs(own[i].max + offset - copied[i].max)), 1e-4f);
+    }
+    of_moved += found.of(ObjectId(o + 2)).size();
+  }
+  EXPECT_GT(of_moved, 60u);
+}
+
+TEST(LikeObjects, AreCopiesAndNothingElse) {
+  std::mt19937 random(6);
+  Shapes shapes = copiedShapes(random);
+  const auto like = [&] { return scene::findLikeObjects(shapes.scene.view(), serialFor); };
+  const std::vector<std::uint32_t> found = like();
+  for (std::uint32_t o = 0; o < found.size(); o += 3) {
+    EXPECT_EQ(found[o], o);
+    EXPECT_EQ(found[o + 1], o);
+    EXPECT_TRUE(found[o + 2] == o || found[o + 2] == o + 2) << found[o + 2];
+  }
+  // One corner of each copy within its box.
+  for (std::uint32_t o = 1; o < found.size(); o += 3) {
+    const Object& object = shapes.scene.objects[o];
+    for (const std::uint32_t corner : shapes.scene.view().indicesOf(object)) {
+      Vec3f& at = shapes.scene.positions[corner];
+      const float most = 4.0f * scene::kLikeness * maxComponent(object.bounds.extent());
+      if (at.x > object.bounds.min.x && at.x + most < object.bounds.max.x) {
+        at.x += most;
+        break;
+      }
+    }
+  }
+  const std::vector<std::uint32_t> after = like();
+  for (std::uint32_t o = 0; o < found.size(); o += 3) {
+    EXPECT_EQ(after[o + 1], o + 1);
+  }
 }
 
 TEST(ObjectBoxes, AreReadAsTheyWereWrittenOrRefused) {

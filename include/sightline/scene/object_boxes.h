@@ -47,7 +47,8 @@ struct ObjectBoxesSettings {
 bool areBoxesOf(std::span<const Box> boxes, const Box& bounds);
 
 // Finds the boxes of all objects, in time linear in the number of triangles. Objects with coordinates that
-// are not finite have one box. The result does not depend on parallel_for.
+// are not finite have one box. Copies of an object at other places are divided where it is, which takes less
+// time. The result does not depend on parallel_for.
 ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& settings = {},
                             const ParallelFor& parallel_for = serialFor);
 
