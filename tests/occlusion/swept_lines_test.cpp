@@ -210,6 +210,77 @@ TEST(SweptLines, AreWithinTheirSweepsForAllViewers) {
   EXPECT_GT(counts.passed, 2'000u);
 }
 
+// Beyond the ends of an edge its line is known the less the farther it goes, and may lie between a pixel's
+// centre and other points of it. Whole rows that the edge crosses are another matter.
+TEST(SweptEdges, LinesThatMeetAPixelBeyondTheirEndsAreTooNearToItsCentre) {
+  constexpr std::int32_t kSize = 24;
+  constexpr double kEnd = kSize * kGridStep, kMargin = BoundaryEdge::kMargin;
+  std::size_t met = 0, level = 0;
+  for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
+    test::ViewRandom random(seed);
+    const auto place = [&] {
+      return GridPoint{std::floor(random.in(0, kEnd)), std::floor(random.in(0, kEnd))};
+    };
+    const GridPoint from = place();
+    GridPoint to = place();
+    if (random.below(2) == 0) {  // shorter than a pixel or two
+      const double size = random.sized(2.0, 600.0);
+      to = rounded({from.x + random.in(-size, size), from.y + random.in(-size, size)});
+    }
+    to.y = random.below(6) == 0 ? from.y : to.y;
+    if (from.x == to.x && from.y == to.y) {
+      continue;
+    }
+    const double most = random.sized(1.0, 4000.0);
+    GridSweeps sweeps;
+    sweeps.reserve(1);
+    sweeps.left[0] = random.in(1.0, most);
+    sweeps.right[0] = random.in(1.0, most);
+    sweeps.down[0] = random.in(1.0, most);
+    sweeps.up[0] = random.in(1.0, most);
+    sweeps.before[0] = sweeps.behind[0] = 3.0 * most;
+    GridLines lines;
+    lines.reserve(1);
+    lines.set(0, from, to);
+    std::vector<BoundaryEdge> edges(1);
+    prepareEdges(lines, &sweeps, {kSize, kSize}, edges);
+    const BoundaryEdge& edge = edges[0];
+    // A line through ends that are off by up to the margin.
+    const auto moved = [&](const GridPoint& p) {
+      return GridPoint{p.x + random.in(-kMargin, kMargin), p.y + random.in(-kMargin, kMargin)};
+    };
+    const GridPoint a = moved(from), b = moved(to);
+    const auto sideOf = [&](double x, double y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); };
+    for (std::int32_t row = edge.first_row; row <= std::min<std::int32_t>(edge.last_row, kSize - 1); ++row) {
+      if (row >= edge.first_whole && row < edge.end_whole) {
+        continue;
+      }
+      for (std::int32_t column = 0; column < kSize; ++column) {
+        const double x = column * kGridStep, y = row * kGridStep, middle_x = x + 0.5 * kGridStep,
+                     middle_y = y + 0.5 * kGridStep;
+        if (x > edge.right || x + kGridStep < edge.left) {
+          continue;  // the edge cannot touch it
+        }
+        const double corners[] = {sideOf(x, y), sideOf(x + kGridStep, y), sideOf(x, y + kGridStep),
+                                  sideOf(x + kGridStep, y + kGridStep)};
+        if (*std::ranges::min_element(corners) > 0.0 || *std::ranges::max_element(corners) < 0.0) {
+          continue;
+        }
+        ++met;
+        if (edge.kind == EdgeSlope::kLevel) {
+          ++level;
+          EXPECT_LE(std::abs(middle_y - edge.x), static_cast<double>(edge.end_doubt)) << "seed " << seed;
+        } else {
+          const double crossing = from.x + (middle_y - from.y) * edge.slope;
+          EXPECT_LE(std::abs(middle_x - crossing), static_cast<double>(edge.end_doubt)) << "seed " << seed;
+        }
+      }
+    }
+  }
+  EXPECT_GT(met, 50'000u);
+  EXPECT_GT(level, 5'000u);
+}
+
 // Otherwise, sweeps that are large everywhere would pass the test above.
 TEST(SweptLines, AreTightAroundWhatIsSeenFarAway) {
   View view;
