@@ -316,10 +316,11 @@ TEST(SweptEdges, ThePixelsThatAreNotCoveredAreThoseThatTheEdgeMayTouch) {
     const GridPoint to{about(kEndX), random.below(8) == 0 ? from.y : about(kEndY)};
     GridSweeps sweeps;
     sweeps.reserve(kEdges);
+    const double least_sweep = random.below(3) == 0 ? 1e6 : 1.0;
     for (std::vector<double>* side :
          {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up, &sweeps.before, &sweeps.behind}) {
       std::fill_n(side->begin(), kEdges, 0.0);
-      (*side)[kThere] = (*side)[kBack] = random.below(6) == 0 ? 0.0 : random.sized(1.0, 1e7);
+      (*side)[kThere] = (*side)[kBack] = random.below(6) == 0 ? 0.0 : random.sized(least_sweep, 1e8);
     }
     GridLines lines;
     lines.reserve(kEdges);
