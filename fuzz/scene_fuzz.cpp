@@ -131,11 +131,12 @@ int main(int argc, char** argv) {
   }
   std::printf(
       "seeds %llu to %llu, %.1f a second: %llu scenes, %llu culled (%llu by the frustum alone), "
-      "%llu proved hidden, %llu undecided, no false cull\n",
+      "%llu proved hidden, %llu undecided, %llu views held, no false cull\n",
       static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(seed - 1),
       static_cast<double>(counts.scenes) / seconds(), static_cast<unsigned long long>(counts.scenes),
       static_cast<unsigned long long>(counts.culled), static_cast<unsigned long long>(counts.frustum),
-      static_cast<unsigned long long>(counts.proved), static_cast<unsigned long long>(counts.undecided));
+      static_cast<unsigned long long>(counts.proved), static_cast<unsigned long long>(counts.undecided),
+      static_cast<unsigned long long>(counts.held));
   for (const auto& [family, hidden] : hidden_of_family) {
     if (family.find(" and ") == std::string::npos) {
       std::printf("  %-10s %llu hidden\n", family.c_str(), static_cast<unsigned long long>(hidden));

@@ -68,9 +68,12 @@ class LineSweeps {
 
   HWY_INLINE void add(const CameraV& from, const CameraV& to) {
     const Place begin = placeOf(from), end = placeOf(to);
-    const auto slope = hn::Div(hn::Sub(end.x, begin.x), hn::Sub(end.y, begin.y));
-    addEnd(from, begin, slope);
-    addEnd(to, end, slope);
+    const auto height = hn::Sub(end.y, begin.y), slope = hn::Div(hn::Sub(end.x, begin.x), height);
+    // Rounding the ends to the grid changes the slope by no more than this, unless it makes the line level.
+    const auto slope_rounding =
+        hn::Div(hn::Add(hn::Abs(slope), set(1.0)), hn::Max(hn::Sub(hn::Abs(height), set(1.0)), set(1.0)));
+    addEnd(from, begin, slope, slope_rounding);
+    addEnd(to, end, slope, slope_rounding);
     // Where the line itself is.
     x_.end(hn::Min(begin.x, end.x), hn::Max(begin.x, end.x));
     y_.end(hn::Min(begin.y, end.y), hn::Max(begin.y, end.y));
@@ -80,7 +83,7 @@ class LineSweeps {
     const auto outside =
         hn::Or(hn::Or(sides_[0].holds(), sides_[1].holds()), hn::Or(sides_[2].holds(), sides_[3].holds()));
     const auto put = [&](DoublesV v, std::vector<double>& to) HWY_ATTR {
-      const auto large = set(2.0 * BoundaryEdge::kBeyond);
+      const auto large = set(4.0 * kLargestGrid);
       const auto swept = hn::IfThenElse(hn::Lt(v, large), v, large);  // also where it is no number
       hn::StoreU(hn::IfThenZeroElse(outside, swept), kDoubles, to.data() + at);
     };
@@ -137,7 +140,7 @@ class LineSweeps {
     }
     HWY_INLINE DoublesV passedHigh() const {
       return hn::IfThenElse(hn::Gt(least_left, set(0.0)),
-                            hn::Max(hn::Add(hn::Add(line_high, least_left), set(1.0)), set(1.0)),
+                            hn::Max(hn::Sub(set(1.0), hn::Add(line_high, least_left)), set(1.0)),
                             set(INFINITY));
     }
   };
@@ -148,7 +151,7 @@ class LineSweeps {
             hn::Mul(hn::Mul(point.y, inverse), set(view_.scale_y * kGridStep))};
   }
 
-  HWY_INLINE void addEnd(const CameraV& end, const Place& at, DoublesV slope) {
+  HWY_INLINE void addEnd(const CameraV& end, const Place& at, DoublesV slope, DoublesV slope_rounding) {
     addCorner(end);
     Place low = at, high = at, farthest{hn::Abs(at.x), hn::Abs(at.y)};
     auto before = set(0.0), behind = set(0.0), nearest = end.z;
@@ -174,7 +177,9 @@ class LineSweeps {
       return hn::Add(hn::Add(ball, hn::Mul(farthest_place, set(kRounding))), set(1.0));
     };
     const auto spare_x = spare(farthest.x, view_.scale_x), spare_y = spare(farthest.y, view_.scale_y);
-    const auto spare_across = hn::Add(spare_x, hn::Mul(hn::Abs(slope), spare_y));
+    const auto swept_y = hn::Add(hn::Max(hn::Sub(at.y, low.y), hn::Sub(high.y, at.y)), spare_y);
+    const auto spare_across =
+        hn::Add(hn::Add(spare_x, hn::Mul(hn::Abs(slope), spare_y)), hn::Mul(slope_rounding, swept_y));
     x_.low = hn::Max(x_.low, hn::Add(hn::Sub(at.x, low.x), spare_x));
     x_.high = hn::Max(x_.high, hn::Add(hn::Sub(high.x, at.x), spare_x));
     y_.low = hn::Max(y_.low, hn::Add(hn::Sub(at.y, low.y), spare_y));

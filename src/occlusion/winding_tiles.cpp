@@ -72,9 +72,13 @@ class TileEdge {
   // Leaves out tiles that the edge does not touch in this row of them.
   HWY_INLINE void narrow(double x, std::int32_t& first, std::int32_t& last) const {
     constexpr double kTiles = 1.0 / (kWide * kGridStep), kRounding = 2.0, kMost = 1 << 16;
-    const double end_x = x + kHigh * kGridStep * edge_.slope;
-    const double low = (std::min(x, end_x) - edge_.reach_left - kRounding) * kTiles,
-                 high = (std::max(x, end_x) + edge_.reach_right + kRounding) * kTiles;
+    // As in EdgeRows: what the edge may touch is no wider than twice kBeyond and the buffer.
+    constexpr double kBeyond = BoundaryEdge::kBeyond;
+    const double begin_x =
+                     std::min(std::max(x, -kBeyond), target_.buffer.width * double{kGridStep} + kBeyond),
+                 end_x = begin_x + kHigh * kGridStep * edge_.slope;
+    const double low = (std::min(begin_x, end_x) - edge_.reach_left - kRounding) * kTiles,
+                 high = (std::max(begin_x, end_x) + edge_.reach_right + kRounding) * kTiles;
     first = std::max(first, static_cast<std::int32_t>(std::min(std::max(low, -1.0), kMost)));
     last = std::min(last, static_cast<std::int32_t>(std::min(std::max(high, -1.0), kMost)));
   }

@@ -104,6 +104,37 @@ TEST(Allocations, DoNotHappenWithSurfacesAlsoAfterAJump) {
   }
 }
 
+// A slow walk, in which most frames hold the answer of another, with a jump in it.
+TEST(Allocations, DoNotHappenWithSeveralViewsAtOnce) {
+  const DemoScene& demo = smallCity();
+  const SurfaceSet surfaces = findSurfaces(demo.scene.view());
+  const CullingScene scene{.hierarchy = &demo.bvh,
+                           .object_bounds = demo.bounds,
+                           .object_boxes = &demo.object_boxes,
+                           .surfaces = &surfaces};
+  std::vector<View> views;
+  for (View view : demo.frames(demo.scene.paths[0], 40, 2)) {
+    for (int frame = 0; frame < 20; ++frame) {
+      view.eye = view.eye + view.forward * 0.02;
+      views.push_back(view);
+    }
+  }
+  const std::vector<Box> dynamic_boxes(demo.bounds.begin(), demo.bounds.begin() + 20);
+  Culler culler(scene, depthPyramid(), {.views_at_once = 6});
+  std::size_t counted = 0, held = 0;
+  for (int round = 0; round < 9; ++round) {
+    const std::size_t before = allocations;
+    held = 0;
+    for (const View& view : views) {
+      culler.cull(view, dynamic_boxes);
+      held += culler.stats().held ? 1 : 0;
+    }
+    counted = allocations - before;
+  }
+  EXPECT_EQ(counted, 0u);
+  EXPECT_GT(held, views.size() / 2);
+}
+
 TEST(Allocations, DoNotHappenWithOccludersThatMove) {
   const DemoScene& demo = smallCity();
   const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 20);

@@ -45,6 +45,7 @@ struct AnySettings {
   double lambda_steps = 0.0;
   std::uint32_t min_node_cost = 0;
   bool visible_sets = false;
+  std::uint32_t views_at_once = 1;
   bool test_objects = true;
   bool use_lists = false;  // occluders come from AnyLists::from_eye
   bool detail_objects = false;
@@ -98,7 +99,8 @@ class AnyCuller : public Culler {
                               .lambda_steps = settings.lambda_steps},
                 .min_node_cost = settings.min_node_cost,
                 .test_objects = settings.test_objects,
-                .visible_sets = settings.visible_sets}),
+                .visible_sets = settings.visible_sets,
+                .views_at_once = settings.views_at_once}),
         settings_(settings) {}
 
   using Culler::reset;

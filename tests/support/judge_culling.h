@@ -27,6 +27,7 @@ struct JudgeCounts {
   std::uint64_t scenes = 0, culled = 0;     // culled: by any method, once a view
   std::uint64_t proved = 0, undecided = 0;  // of these
   std::uint64_t frustum = 0;                // of these: outside the view for the frustum test alone
+  std::uint64_t held = 0;                   // views that were culled together with others
 };
 
 // The result depends on the seed alone.
@@ -48,7 +49,7 @@ class CullingJudge {
     lists_ = OccluderDatabase::build(kd_tree_, static_occluders_, {.directions = 8, .occluder_count = 64});
     near_lists_ = OccluderDatabase::build(kd_tree_, static_occluders_,
                                           {.directions = 8, .occluder_count = 64, .turned_away = true});
-    for (std::uint32_t i = 0; i < 10; ++i) {
+    for (std::uint32_t i = 0; i < kCullers; ++i) {
       addCuller(i);
     }
   }
@@ -62,6 +63,7 @@ class CullingJudge {
     counts.scenes += 1;
     for (std::size_t v = 0; v < hostile_.views.size(); ++v) {
       cull(hostile_.views[v]);
+      counts.held += cullers_[kOfSeveralViews]->stats().held ? 1 : 0;
       std::vector<ObjectId> culled;
       for (std::uint32_t o = 0; o < bounds_.size(); ++o) {
         if (!culled_by_[o].empty()) {
@@ -84,6 +86,9 @@ class CullingJudge {
   }
 
  private:
+  // The last culler culls several views at once. Its options are drawn last, so that the others keep theirs.
+  static constexpr std::uint32_t kOfSeveralViews = 10, kCullers = kOfSeveralViews + 1;
+
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
 
@@ -147,6 +152,10 @@ class CullingJudge {
     const bool kd = chance(3);
     if (number == 0) {
       s = {.method = AnyMethod::kFrustum};
+    } else if (number == kOfSeveralViews) {
+      s.method = AnyMethod::kDepthPyramid;
+      s.surfaces = SurfaceUse::kAlone;
+      s.views_at_once = 2 + below(15);
     }
     constexpr const char* kNames[] = {"frustum",     "occlusion tree", "supporting planes",
                                       "kept planes", "opacity map",    "depth pyramid"};
@@ -158,19 +167,43 @@ class CullingJudge {
         ", coherence " + std::to_string(s.temporal_coherence) + ", occluders " +
         std::to_string(s.occluder_count) + ", detail " + std::to_string(s.detail_objects) + ", surfaces " +
         std::to_string(static_cast<int>(s.surfaces)) + ", lists " + std::to_string(s.use_lists) + ", boxes " +
-        std::to_string(s.object_boxes) + (kd ? ", kd-tree" : ", bvh") + ")");
+        std::to_string(s.object_boxes) + ", views at once " + std::to_string(s.views_at_once) +
+        (kd ? ", kd-tree" : ", bvh") + ")");
     cullers_.push_back(
         std::make_unique<AnyCuller>(kd ? kd_tree_ : bvh_, bounds_, static_occluders_, s,
                                     AnyLists{&lists_, &near_lists_, &surfaces_, &object_boxes_}));
+  }
+
+  // Views over which a camera comes to this one, moving and turning by the same each frame.
+  std::vector<View> approachTo(const View& view) {
+    const auto in = [&](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
+    };
+    const double size = 10.0 * view.near * std::exp2(in(-14.0, -1.0)),
+                 angle = chance(2) ? 0.0 : in(-0.02, 0.02);
+    const Vec3d step = (view.right * in(-1, 1) + view.up * in(-1, 1) + view.forward * in(-1, 1)) * size;
+    std::vector<View> views;
+    for (std::uint32_t before = 2 + below(2); before > 0; --before) {
+      View earlier = view;
+      earlier.eye = view.eye - step * before;
+      earlier.forward = view.forward * std::cos(angle * before) + view.right * std::sin(angle * before);
+      earlier.right = view.right * std::cos(angle * before) - view.forward * std::sin(angle * before);
+      views.push_back(earlier);
+    }
+    return views;
   }
 
   // Targets are given as moving boxes too: what either answer leaves out is culled.
   void cull(const View& view) {
     culled_by_.assign(bounds_.size(), {});
     const std::span<const Box> boxes = std::span(bounds_).subspan(hostile_.first_target);
+    const OccluderSet* moving = moving_occluders_.occluders.empty() ? nullptr : &moving_occluders_;
+    for (const View& earlier : approachTo(view)) {
+      cullers_[kOfSeveralViews]->cull(earlier, boxes, moving);
+    }
     for (std::size_t c = 0; c < cullers_.size(); ++c) {
       AnyCuller& culler = *cullers_[c];
-      culler.cull(view, boxes, moving_occluders_.occluders.empty() ? nullptr : &moving_occluders_);
+      culler.cull(view, boxes, moving);
       for (std::uint32_t o = 0; o < bounds_.size(); ++o) {
         const bool kept = std::binary_search(culler.visible().begin(), culler.visible().end(), ObjectId(o));
         const bool hidden = o >= hostile_.first_target &&

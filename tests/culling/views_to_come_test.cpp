@@ -1,0 +1,564 @@
+// Culling several views at once: what is planned for, and what is kept in the frames that hold an answer.
+
+#include "src/culling/views_to_come.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "oracle/exact_visibility.h"
+#include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/culling/frustum_method.h"
+#include "sightline/culling/occlusion_tree_method.h"
+#include "sightline/culling/opacity_map_method.h"
+#include "sightline/culling/while_it_pays.h"
+#include "src/scene/usable_view.h"
+#include "tests/culling/demo_frames.h"
+#include "tests/culling/fake_sets.h"
+#include "tests/support/random_numbers.h"
+
+namespace sightline {
+namespace {
+
+using culling::ViewsToCome;
+using demo_frames::DemoScene;
+
+// A camera that moves and turns by the same each frame.
+struct Motion {
+  View view;
+  Vec3d step;                 // scene space
+  Vec3d axis{0.0, 0.0, 1.0};  // 1 long
+  double angle = 0.0;         // radians a frame
+
+  View next() {
+    view.eye = view.eye + step;
+    step = turned(step);
+    setOrientation(view, turned(view.forward), turned(view.up));
+    return view;
+  }
+  Vec3d turned(const Vec3d& v) const {
+    return v * std::cos(angle) + cross(axis, v) * std::sin(angle) +
+           axis * (dot(axis, v) * (1.0 - std::cos(angle)));
+  }
+};
+
+Motion randomMotion(test::Random& random) {
+  Motion motion;
+  const double sizes[] = {0.01, 1.0, 1000.0};
+  const double size = sizes[random.below(3)];
+  View& view = motion.view;
+  view.eye = random.point(random.below(2) == 0 ? 10.0 : 1e5) * size;
+  setOrientation(view, random.point(1.0), random.point(1.0));
+  view.tan_half_fovy = random.in(0.1, 1.2);
+  view.aspect = random.in(0.5, 2.0);
+  view.near = size * random.in(0.01, 1.0);
+  view.far = random.below(4) == 0 ? std::numeric_limits<double>::infinity() : size * random.in(10.0, 1000.0);
+  if (random.below(3) == 0) {
+    view.shift_x = random.in(-0.9, 0.9);
+    view.shift_y = random.in(-0.9, 0.9);
+  }
+  motion.step = random.point(random.below(4) == 0 ? 0.0 : random.in(0.0, 0.5)) * size;
+  const Vec3d axis = random.point(1.0);
+  motion.axis = length(axis) > 0.1 ? normalized(axis) : Vec3d(0, 0, 1);
+  motion.angle = random.below(3) == 0 ? 0.0 : random.in(-0.05, 0.05);
+  return motion;
+}
+
+// A view like this one: a little elsewhere, turned, wider or narrower, with another near plane.
+View strayed(const View& view, const Motion& motion, test::Random& random) {
+  View other = view;
+  const double most = random.below(2) == 0 ? 0.003 : 0.1;
+  other.eye = other.eye + random.point(most) * length(motion.step);
+  setOrientation(other, view.forward + random.point(most), view.up + random.point(most));
+  other.tan_half_fovy *= 1.0 + random.in(-most, most);
+  other.aspect *= 1.0 + random.in(-most, most);
+  other.near *= 1.0 + random.in(-most, most);
+  other.far *= 1.0 + random.in(-most, most);
+  return other;
+}
+
+// A corner of the view's volume, or a point of it; at most so far away.
+Vec3d pointOf(const View& view, test::Random& random, double farthest) {
+  const auto side = [&] {
+    const std::uint32_t kind = random.below(3);
+    return kind == 0 ? -1.0 : kind == 1 ? 1.0 : random.in(-1.0, 1.0);
+  };
+  const double far = std::min(view.far, farthest);
+  const std::uint32_t kind = random.below(3);
+  const double depth = kind == 0 ? view.near : kind == 1 ? far : random.in(view.near, far);
+  return view.eye +
+         (view.forward + view.right * ((view.shift_x + side()) * view.tan_half_fovy * view.aspect) +
+          view.up * ((view.shift_y + side()) * view.tan_half_fovy)) *
+             depth;
+}
+
+// By this test's own arithmetic, up to the rounding of coordinates so far from the origin.
+bool inVolume(const View& view, const Vec3d& point) {
+  const Vec3d v = point - view.eye;
+  const double x = dot(v, view.right), y = dot(v, view.up), z = dot(v, view.forward);
+  const double rounding = 1e-12 * (length(v) + length(view.eye));
+  const double width = view.tan_half_fovy * view.aspect, height = view.tan_half_fovy;
+  return z >= view.near - rounding && z <= view.far + rounding &&
+         std::abs(x - view.shift_x * width * z) <= width * z + rounding * (1.0 + width) &&
+         std::abs(y - view.shift_y * height * z) <= height * z + rounding * (1.0 + height);
+}
+
+// How far a point is from the segment between two others.
+double distanceTo(const Vec3d& point, const Vec3d& from, const Vec3d& to) {
+  double least = std::min(length(point - from), length(point - to));
+  const Vec3d along = to - from;
+  const double t = dot(point - from, along) / dot(along, along);
+  if (t > 0.0 && t < 1.0) {
+    least = std::min(least, length(point - from - along * t));
+  }
+  return least;
+}
+
+TEST(ViewsToCome, TheWideViewShowsAllOfEveryViewThatIsHeld) {
+  std::size_t planned = 0, held = 0, refused = 0, points = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    test::Random random(seed);
+    Motion motion = randomMotion(random);
+    ViewsToCome views(2 + random.below(15));
+    views.see(motion.view);
+    EXPECT_FALSE(views.plan()) << "seed " << seed;
+    views.see(motion.next());
+    if (!views.plan()) {
+      continue;
+    }
+    ++planned;
+    const View wide = views.wide();
+    const ViewerRegion& viewers = views.viewers();
+    ASSERT_TRUE(validate(wide).has_value()) << "seed " << seed;
+    EXPECT_TRUE(views.contain(motion.view)) << "seed " << seed;
+    View next = motion.view;
+    for (int frame = 0; frame < 12; ++frame) {
+      for (int n = 0; n < 6; ++n) {
+        const View view = n == 0 ? next : strayed(next, motion, random);
+        if (!views.contain(view)) {
+          ++refused;
+          continue;
+        }
+        ++held;
+        const double size = length(view.eye) + length(wide.eye);
+        EXPECT_LE(distanceTo(view.eye - wide.eye, viewers.offsets[0], viewers.offsets[1]),
+                  viewers.radius + 1e-12 * size)
+            << "seed " << seed;
+        EXPECT_LE(nearDistance(view), viewers.near_distance) << "seed " << seed;
+        for (int k = 0; k < 12; ++k) {
+          const Vec3d point = pointOf(view, random, 1e5 * view.near);
+          ++points;
+          EXPECT_TRUE(inVolume(wide, point)) << "seed " << seed << ", frame " << frame << ", view " << n;
+        }
+      }
+      next = motion.next();
+    }
+  }
+  EXPECT_GT(planned, 700u);
+  EXPECT_GT(held, 10'000u);
+  EXPECT_GT(refused, 10'000u);
+  EXPECT_GT(points, 100'000u);
+}
+
+// What is beside all that was planned for is not contained, however little.
+TEST(ViewsToCome, ViewsThatLeaveWhatWasPlannedAreNotContained) {
+  test::Random random(5);
+  std::size_t planned = 0;
+  for (int n = 0; n < 300; ++n) {
+    Motion motion = randomMotion(random);
+    ViewsToCome views(8);
+    views.see(motion.view);
+    views.see(motion.next());
+    if (!views.plan()) {
+      continue;
+    }
+    ++planned;
+    const View& at = motion.view;
+    const double path = length(views.viewers().offsets[1] - views.viewers().offsets[0]);
+    std::vector<View> others(8, at);
+    others[0].eye = at.eye + at.right * (path + 2.0 * views.viewers().radius + 1e-6);
+    others[1].eye = at.eye - at.forward * (path + 2.0 * views.viewers().radius + 1e-6);
+    setOrientation(others[2], -at.forward, at.up);
+    setOrientation(others[3], at.right, at.up);
+    others[4].tan_half_fovy *= 3.0;
+    others[5].near *= 1.5;
+    others[6].far = 2.0 * at.far + 10.0 * path;
+    others[7].orthographic = true;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      if (i != 6 || std::isfinite(at.far)) {
+        EXPECT_FALSE(views.contain(others[i])) << "motion " << n << ", view " << i;
+      }
+    }
+  }
+  EXPECT_GT(planned, 100u);
+}
+
+// How many frames hold what was planned in one, if the camera goes on as it did.
+std::size_t framesHeld(ViewsToCome& views, Motion motion) {
+  std::size_t held = 0;
+  for (; held < 100; ++held) {
+    views.see(motion.next());
+    if (!views.hold()) {
+      break;
+    }
+  }
+  return held;
+}
+
+View plainView() {
+  View view;
+  setOrientation(view, {1, 0, 0}, {0, 0, 1});
+  return view;
+}
+
+TEST(ViewsToCome, NothingIsPlannedForWhatCannotBeFollowed) {
+  Motion motion{.view = plainView(), .step = {0.1, 0, 0}};
+  ViewsToCome one(1), views(8);
+  for (int frame = 0; frame < 4; ++frame) {
+    one.see(motion.view);
+    EXPECT_FALSE(one.plan());
+    views.see(motion.next());
+    EXPECT_EQ(views.plan(), frame > 0);
+  }
+  // The camera turns by more than 30 degrees.
+  const View before = motion.view;
+  for (const Vec3d& forward : {Vec3d(1, 1, 0), Vec3d(0, 1, 0), Vec3d(-1, 0, 0), Vec3d(-1, -0.01, 0)}) {
+    View turned = before;
+    setOrientation(turned, forward, {0, 0, 1});
+    views.see(before);
+    views.see(turned);
+    EXPECT_FALSE(views.plan()) << forward.x << ' ' << forward.y;
+  }
+  // Either view is orthographic.
+  for (const bool last : {false, true}) {
+    View first = before, second = before;
+    (last ? first : second).orthographic = true;
+    views.see(first);
+    views.see(second);
+    EXPECT_FALSE(views.plan()) << last;
+  }
+  views.see(before);
+  views.see(before);
+  EXPECT_TRUE(views.plan());
+  EXPECT_TRUE(views.hold());
+  views.forget();
+  EXPECT_FALSE(views.hold());
+  views.see(before);
+  EXPECT_FALSE(views.plan()) << "there was no frame before";
+}
+
+TEST(ViewsToCome, AnAnswerIsHeldForAtMostAsManyFramesAsWereAskedFor) {
+  for (const std::uint32_t most : {2u, 3u, 8u, 16u, 1000u}) {
+    for (const double step : {0.0, 0.01}) {
+      Motion motion{.view = plainView(), .step = {0, step, 0}};
+      ViewsToCome views(most);
+      views.see(motion.view);
+      views.see(motion.next());
+      ASSERT_TRUE(views.plan());
+      // One of them is the frame that was planned in.
+      EXPECT_EQ(framesHeld(views, motion), std::min(most, 16u) - 1) << most << ", " << step;
+      EXPECT_FALSE(views.hold());
+    }
+  }
+  // Also if the camera comes back.
+  ViewsToCome views(4);
+  views.see(plainView());
+  views.see(plainView());
+  ASSERT_TRUE(views.plan());
+  EXPECT_TRUE(views.hold());
+  views.end();
+  EXPECT_FALSE(views.hold());
+}
+
+TEST(ViewsToCome, TheNearerThingsAreAndTheFasterTheCameraTheFewerViewsArePlanned) {
+  constexpr std::uint32_t kWidth = 320, kHeight = 180;
+  const auto held = [&](double depth, double step) {
+    const std::vector<float> buffer(kWidth * kHeight, static_cast<float>(1.0 / depth));
+    Motion motion{.view = plainView(), .step = {0, step, 0}};
+    ViewsToCome views(16);
+    views.see(motion.view);
+    views.measure(motion.view, {buffer, kWidth, kHeight, kWidth});
+    views.see(motion.next());
+    return views.plan() ? framesHeld(views, motion) + 1 : 0;
+  };
+  // A metre at 10 metres is 0.1 / tan_half_fovy * 90 = 18 pixels. At 0.05 metres a frame that is 0.9 pixels.
+  const std::size_t slow = held(10.0, 0.05);
+  EXPECT_GE(slow, 4u);
+  EXPECT_LT(slow, 16u);
+  EXPECT_EQ(held(20.0, 0.1), slow);
+  EXPECT_NEAR(static_cast<double>(held(10.0, 0.1)), 0.5 * static_cast<double>(slow), 1.0);
+  EXPECT_NEAR(static_cast<double>(held(5.0, 0.05)), 0.5 * static_cast<double>(slow), 1.0);
+  EXPECT_EQ(held(10.0, 10.0), 0u);
+  EXPECT_EQ(held(0.1, 0.5), 0u);
+  EXPECT_EQ(held(1e6, 0.05), 16u);
+}
+
+// A demo scene, its surfaces, and what rays see of it.
+class SeenScene {
+ public:
+  explicit SeenScene(const DemoScene& of)
+      : demo(of), surfaces(findSurfaces(of.scene.view())), exact(of.scene.view()) {}
+
+  CullingScene culled() const {
+    return {.hierarchy = &demo.bvh,
+            .object_bounds = demo.bounds,
+            .object_boxes = &demo.object_boxes,
+            .occluders = &demo.occluders,
+            .surfaces = &surfaces};
+  }
+  Culler culler(std::uint32_t views_at_once, DepthPyramidMethodSettings settings = kAll) const {
+    return Culler(culled(), depthPyramid(settings), {.views_at_once = views_at_once});
+  }
+
+  static constexpr DepthPyramidMethodSettings kAll{
+      .surfaces = SurfaceUse::kAlone,
+      .drawing = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0}};
+  const DemoScene& demo;
+  SurfaceSet surfaces;
+  ExactVisibility exact;
+};
+
+const SeenScene& city() {
+  static const SeenScene kCity(demo_frames::smallCity());
+  return kCity;
+}
+const SeenScene& building() {
+  static const SeenScene kBuilding(demo_frames::smallBuilding());
+  return kBuilding;
+}
+
+// A walk that follows a path of the scene, stands still, turns, zooms, jumps and goes back.
+std::vector<View> wander(const SeenScene& seen, std::uint64_t seed, std::size_t count) {
+  test::Random random(seed);
+  std::vector<View> views;
+  while (views.size() < count) {
+    const std::vector<CameraPath>& paths = seen.demo.scene.paths;
+    const CameraPath& path = paths[random.below(static_cast<std::uint32_t>(paths.size()))];
+    std::size_t frame = random.below(static_cast<std::uint32_t>(path.frames.size()));
+    Motion motion{.view = path.view(frame, seen.demo.scene.origin)};
+    const std::uint32_t kind = random.below(4);
+    motion.step = kind == 0 ? Vec3d() : motion.view.forward * random.in(-0.1, 0.1) + random.point(0.05);
+    motion.angle = kind == 1 ? 0.0 : random.in(-0.03, 0.03);
+    for (std::uint32_t i = 4 + random.below(20); i > 0; --i) {
+      if (kind == 3 && frame + 1 < path.frames.size()) {
+        motion.view = path.view(++frame, seen.demo.scene.origin);
+      } else {
+        motion.next();
+      }
+      if (random.below(20) == 0) {
+        motion.view.tan_half_fovy *= random.in(0.97, 1.03);
+      }
+      views.push_back(motion.view);
+    }
+  }
+  views.resize(count);
+  return views;
+}
+
+bool isKept(const Culler& culler, ObjectId object) {
+  return std::ranges::binary_search(culler.visible(), object);
+}
+
+// Every object's box is given as a moving one too.
+void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<const View> views,
+                            const std::string& where) {
+  std::size_t held = 0, hidden = 0, hidden_boxes = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    culler.cull(views[v], seen.demo.bounds);
+    if (!culler.stats().held) {
+      continue;
+    }
+    ++held;
+    std::vector<Witness> witnesses = seen.exact.visibleThroughPixels(views[v], 96, 54);
+    std::vector<ObjectId> culled;
+    const Frustum frustum = frustumOf(views[v]);
+    for (std::size_t o = 0; o < seen.demo.bounds.size(); ++o) {
+      std::uint8_t cut = kAllFrustumPlanes;
+      const bool outside = classify(frustum, seen.demo.bounds[o], cut) == FrustumSide::kOutside;
+      const bool kept = isKept(culler, ObjectId(o));
+      const bool box_kept = culler.dynamicStates()[o] != Visibility::kHidden;
+      EXPECT_FALSE(outside && kept) << where << ", view " << v << ", object " << o;
+      hidden += !outside && !kept ? 1 : 0;
+      hidden_boxes += !outside && !box_kept ? 1 : 0;
+      if (!outside && (!kept || !box_kept)) {
+        culled.emplace_back(o);
+      }
+    }
+    const std::vector<Witness> aimed = seen.exact.visibleByAimedRays(views[v], culled, 4);
+    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
+    for (const Witness& witness : witnesses) {
+      if (!isKept(culler, witness.object) ||
+          culler.dynamicStates()[witness.object.value] == Visibility::kHidden) {
+        EXPECT_FALSE(seen.exact.confirm(views[v], witness))
+            << where << ", view " << v << ": object " << witness.object.value << " is seen at "
+            << witness.point.x << ' ' << witness.point.y << ' ' << witness.point.z;
+      }
+    }
+  }
+  EXPECT_GT(held, views.size() / 4) << where;
+  EXPECT_GT(hidden, held) << where;
+  EXPECT_GT(hidden_boxes, held) << where;
+}
+
+TEST(ViewsAtOnce, WhatIsSeenIsKeptInFramesThatHoldAnAnswer) {
+  for (const std::uint32_t count : {2u, 6u, 16u}) {
+    Culler in_city = city().culler(count), in_building = building().culler(count);
+    expectWhatIsSeenIsKept(city(), in_city, wander(city(), count, 120), "city " + std::to_string(count));
+    expectWhatIsSeenIsKept(building(), in_building, wander(building(), count, 120),
+                           "building " + std::to_string(count));
+  }
+}
+
+TEST(ViewsAtOnce, WhatIsSeenIsKeptWithFinerBuffersToo) {
+  DepthPyramidMethodSettings settings = SeenScene::kAll;
+  settings.raster = {.width = 64, .height = 36};
+  settings.focus.worth = 1e9;
+  Culler culler = city().culler(6, settings);
+  expectWhatIsSeenIsKept(city(), culler, wander(city(), 77, 120), "city, finer buffers");
+}
+
+// A camera at rest sees the same in all frames of an answer, and finds it again.
+TEST(ViewsAtOnce, AtRestAllFramesKeepTheSameAndOnlyEveryNthIsCulled) {
+  const View view = city().demo.frames(city().demo.scene.paths[0], 40, 1)[0];
+  constexpr std::uint32_t kCount = 5;
+  Culler culler = city().culler(kCount);
+  culler.cull(view);
+  EXPECT_FALSE(culler.stats().held);
+  std::vector<ObjectId> kept;
+  for (std::uint32_t frame = 0; frame < 4 * kCount; ++frame) {
+    culler.cull(view);
+    const CullStats& stats = culler.stats();
+    EXPECT_EQ(stats.held, frame % kCount != 0) << frame;
+    if (stats.held) {
+      EXPECT_TRUE(std::ranges::equal(culler.visible(), kept)) << frame;
+      EXPECT_EQ(stats.nodes_tested + stats.objects_tested + stats.nodes_visited, 0u);
+      for (const MethodStatistic& statistic : culler.statistics()) {
+        EXPECT_EQ(statistic.value, 0u) << statistic.name;
+      }
+    } else {
+      kept.assign(culler.visible().begin(), culler.visible().end());
+      EXPECT_GT(stats.nodes_tested, 0u);
+    }
+  }
+}
+
+// Along a street, a step a frame.
+std::vector<View> slowWalk(const SeenScene& seen, std::size_t count) {
+  Motion motion{.view = seen.demo.frames(seen.demo.scene.paths[0], 40, 1)[0]};
+  motion.step = motion.view.forward * 0.02;
+  motion.angle = 0.002;
+  std::vector<View> views;
+  while (views.size() < count) {
+    views.push_back(motion.next());
+  }
+  return views;
+}
+
+std::size_t heldFrames(Culler& culler, std::span<const View> views, const OccluderSet* moving = nullptr,
+                       std::span<const MovingSurfaces> moving_surfaces = {}) {
+  std::size_t held = 0;
+  for (const View& view : views) {
+    culler.cull(view, {}, moving, moving_surfaces);
+    held += culler.stats().held ? 1 : 0;
+  }
+  return held;
+}
+
+TEST(ViewsAtOnce, OnlyWhatHidesForAllViewersIsHeld) {
+  const SeenScene& seen = city();
+  const std::vector<View> views = slowWalk(seen, 24);
+  Culler culler = seen.culler(8);
+  EXPECT_GT(heldFrames(culler, views), 8u);
+  const OccluderSet nothing;
+  EXPECT_EQ(heldFrames(culler, views, &nothing), 0u);
+  const MovingSurfaces none{};
+  EXPECT_EQ(heldFrames(culler, views, nullptr, {&none, 1}), 0u);
+  // In turns with frames that nothing moves in: there, what was planned before has ended.
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    culler.cull(views[v], {}, v % 2 == 1 ? &nothing : nullptr);
+    EXPECT_FALSE(culler.stats().held) << v;
+  }
+  Culler one_by_one = seen.culler(1);
+  EXPECT_EQ(heldFrames(one_by_one, views), 0u);
+
+  const auto heldWith = [&](std::unique_ptr<CullingMethod> method, bool sets = false) {
+    fake_sets::FakeSets everything(seen.demo.bounds);
+    CullingScene scene = seen.culled();
+    scene.sets = sets ? &everything : nullptr;
+    Culler other(scene, std::move(method), {.visible_sets = sets, .views_at_once = 8});
+    return heldFrames(other, views);
+  };
+  EXPECT_GT(heldWith(depthPyramid()), 8u);
+  EXPECT_GT(heldWith(whileItPays(depthPyramid(), {.object_us = 1e6, .triangle_us = 1e6})), 8u);
+  EXPECT_EQ(heldWith(depthPyramid(), true), 0u);
+  EXPECT_EQ(heldWith(depthPyramid({.surfaces = SurfaceUse::kNone})), 0u);
+  EXPECT_EQ(heldWith(depthPyramid({.surfaces = SurfaceUse::kWithOccluders})), 0u);
+  EXPECT_EQ(heldWith(opacityMap({.surfaces = SurfaceUse::kAlone})), 0u);
+  EXPECT_EQ(heldWith(occlusionTree({})), 0u);
+  EXPECT_EQ(heldWith(frustumCulling()), 0u);
+}
+
+TEST(ViewsAtOnce, ViewsThatAreNotPlannedForAreCulledByThemselves) {
+  const SeenScene& seen = city();
+  const View view = seen.demo.frames(seen.demo.scene.paths[0], 40, 1)[0];
+  Culler culler = seen.culler(8);
+  const auto startHolding = [&] {
+    for (int frame = 0; frame < 3; ++frame) {
+      culler.cull(view);
+    }
+    // Another frame would be held, or be the first of a new answer and the next one held.
+    culler.cull(view);
+    return culler.stats().held;
+  };
+  std::vector<View> others(4, view);
+  others[0].eye = view.eye + view.right * 5.0;
+  setOrientation(others[1], -view.forward, view.up);
+  others[2].orthographic = true;
+  others[3].tan_half_fovy = 1.9 * view.tan_half_fovy;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    culler.reset();
+    EXPECT_TRUE(startHolding()) << i;
+    culler.cull(others[i]);
+    EXPECT_FALSE(culler.stats().held) << i;
+  }
+  // A view that is no view keeps everything, and ends what was planned.
+  culler.reset();
+  EXPECT_TRUE(startHolding());
+  View none = view;
+  none.tan_half_fovy = -1.0;
+  culler.cull(none);
+  EXPECT_FALSE(culler.stats().held);
+  EXPECT_EQ(culler.visible().size(), seen.demo.bounds.size());
+  culler.cull(view);
+  EXPECT_FALSE(culler.stats().held);
+}
+
+// What hid half of the objects is gone.
+TEST(ViewsAtOnce, ResetForgetsTheAnswer) {
+  const SeenScene& seen = city();
+  const View view = seen.demo.frames(seen.demo.scene.paths[0], 40, 1)[0];
+  Culler culler = seen.culler(8);
+  for (int frame = 0; frame < 4; ++frame) {
+    culler.cull(view);
+  }
+  ASSERT_TRUE(culler.stats().held);
+  const std::size_t kept = culler.visible().size();
+  const SurfaceSet nothing;
+  CullingScene open = seen.culled();
+  open.surfaces = &nothing;
+  open.occluders = nullptr;
+  culler.reset(open);
+  for (int frame = 0; frame < 12; ++frame) {
+    culler.cull(view);
+    EXPECT_FALSE(frame < 1 && culler.stats().held);
+    EXPECT_GT(culler.visible().size(), kept) << frame;
+  }
+}
+
+}  // namespace
+}  // namespace sightline
