@@ -101,8 +101,8 @@ struct Culler::Impl {
   // True if the scene does not fit together or the view is invalid, so that nothing may be culled.
   bool keepsEverything() const { return stats.unfit || stats.view_fault != nullptr; }
   void keepEverything() {
-    visible.clear();
-    culling::appendAll(*scene.hierarchy, scene.object_bounds.size(), visible);
+    answer.clear();
+    culling::appendAll(*scene.hierarchy, scene.object_bounds.size(), answer);
     last_view.forget();
     views_to_come.forget();
     of_several = false;
@@ -119,51 +119,47 @@ struct Culler::Impl {
     return another;
   }
 
-  // Culls a frame. alone: nothing but the scene itself hides anything in it.
-  void cullView(const View& view, const Frustum& frustum, bool alone, const OccluderSet* moving,
+  void cullView(const View& view, const Frustum& frustum, const OccluderSet* moving,
                 std::span<const MovingSurfaces> moving_surfaces) {
+    const bool alone =
+        moving == nullptr && moving_surfaces.empty();  // else what hides is another set in each
+    const bool jumped = last_view.jumpsTo(view);
     views_to_come.see(view);
-    if (alone && views_to_come.hold()) {
-      Laps laps;
+    if (alone && views_to_come.takeHeld()) {
       stats.held = true;
       clearStatistics();
       keepInView(frustum);
-      stats.traverse_us = laps.lap();
       return;
     }
-    if (std::exchange(of_several, false)) {
-      visible.swap(answer);
-    }
-    of_several = alone && !filter && method->answersForRegions() && views_to_come.plan();
-    if (!of_several) {
+    of_several = alone && !jumped && !filter && method->answersForRegions() && views_to_come.plan();
+    if (of_several) {
+      culled_view = views_to_come.wide();
+      cullObjects(culled_view, frustumOf(culled_view), views_to_come.viewers(), jumped, moving,
+                  moving_surfaces);
+      keepInView(frustum);
+    } else {
       views_to_come.end();
       culled_view = view;
-      cullObjects(view, frustum, {}, moving, moving_surfaces);
-    } else {
-      culled_view = views_to_come.wide();
-      cullObjects(culled_view, frustumOf(culled_view), views_to_come.viewers(), moving, moving_surfaces);
-      Laps laps;
-      visible.swap(answer);
-      keepInView(frustum);
-      stats.traverse_us += laps.lap();
+      cullObjects(view, frustum, {}, jumped, moving, moving_surfaces);
     }
     views_to_come.measure(culled_view, method->depthBuffer());
   }
 
-  // Sets `visible` to the objects of `answer` that are in the view.
+  // Sets `in_view` to the objects of the answer that are in the view.
   void keepInView(const Frustum& frustum) {
-    visible.clear();
+    Laps laps;
+    in_view.clear();
     for (const ObjectId object : answer) {
       std::uint8_t cut = kAllFrustumPlanes;
       if (classify(frustum, scene.object_bounds[object.value], cut) != FrustumSide::kOutside) {
-        visible.push_back(object);
+        in_view.push_back(object);
       }
     }
+    stats.traverse_us += laps.lap();
   }
 
-  void cullObjects(const View& view, const Frustum& frustum, const ViewerRegion& viewers,
+  void cullObjects(const View& view, const Frustum& frustum, const ViewerRegion& viewers, bool jumped,
                    const OccluderSet* moving, std::span<const MovingSurfaces> moving_surfaces) {
-    const bool jumped = last_view.jumpsTo(view);
     const bool another_set = filter && lookUp(view);
     const SetFilter* set = filter && !filter->everything() ? &*filter : nullptr;
     Laps laps;
@@ -173,7 +169,7 @@ struct Culler::Impl {
                        .jumped = jumped,
                        .moving_surfaces = moving_surfaces,
                        .max_occluders = settings.occluders.count,
-                       .last_visible = visible,
+                       .last_visible = answer,
                        .filter = set,
                        .filter_changed = another_set,
                        .min_node_cost = settings.min_node_cost,
@@ -183,18 +179,18 @@ struct Culler::Impl {
       std::span<const OccluderId> chosen;
       if (method->wantsOccluders()) {
         chosen =
-            choice->choose({view, frustum, jumped, last_view.step(), visible, set, method->drawsBodies()});
+            choice->choose({view, frustum, jumped, last_view.step(), answer, set, method->drawsBodies()});
         stats.choose_us = laps.lap();
       }
       frame.occluders = inUse(chosen, moving);
     }
     method->build(frame);
     stats.build_us = laps.lap();
-    visible.clear();
+    answer.clear();
     frame.last_visible = {};
-    method->traverse(frame, stats, visible);
+    method->traverse(frame, stats, answer);
     if (several_boxes) {
-      several_boxes->removeHidden(frustum, *method, visible);
+      several_boxes->removeHidden(frustum, *method, answer);
     }
     stats.traverse_us = laps.lap() - stats.detail_us;
   }
@@ -251,13 +247,13 @@ struct Culler::Impl {
   std::optional<culling::SeveralBoxes> several_boxes;
   culling::LastView last_view;
   culling::ViewsToCome views_to_come;
-  std::vector<ObjectId> answer;  // what was kept for several views at once
-  bool of_several = false;       // `answer` is the last one, and not `visible`
-  View culled_view;              // for which it was found
+  View culled_view;              // the last one that was culled
+  std::vector<ObjectId> answer;  // what was kept in it
+  bool of_several = false;       // it was found for several views, of which this frame's keeps `in_view`
+  std::vector<ObjectId> in_view;
   ParallelFor parallel_for = serialFor;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()
   std::vector<OccluderId> all_moving;
-  std::vector<ObjectId> visible;
   std::vector<Visibility> dynamic_states;
   // The moving boxes that the method classifies: their indices, the boxes and the results.
   std::vector<std::size_t> asked;
@@ -289,7 +285,7 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
     impl_->stats.traverse_us = impl_->classifyMoving(frustum, dynamic_boxes);
     return;
   }
-  impl_->cullView(view, frustum, moving == nullptr && moving_surfaces.empty(), moving, moving_surfaces);
+  impl_->cullView(view, frustum, moving, moving_surfaces);
   if (impl_->stats.held) {
     impl_->stats.traverse_us += impl_->classifyMoving(frustum, dynamic_boxes);
     return;
@@ -301,7 +297,7 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
 }
 
 std::span<const ObjectId> Culler::visible() const {
-  return impl_->visible;
+  return impl_->of_several ? impl_->in_view : impl_->answer;
 }
 std::span<const Visibility> Culler::dynamicStates() const {
   return impl_->dynamic_states;

@@ -15,12 +15,16 @@ constexpr std::uint32_t kMostViews = 16;
 // Views are planned for until what is at the middle of the depths in view has moved so many pixels of the
 // buffer. With 4, three walks at 4 metres a second take 1.5 times as long, and keep up to a tenth less.
 constexpr double kMostDrift = 8.0;
-// How far the camera may stray from where it is expected: of what it moves and turns until the last of the
-// views, and radians.
+// The camera is followed as long as its eye strays from the line between the first and the last expected one
+// by no more than kStray of what it walks meanwhile, and its picture to no side by more than kStrayTurn of
+// what it turns, and kLeastTurn radians.
 constexpr double kStray = 0.01, kStrayTurn = 0.25, kLeastTurn = 0.005;
 // No picture is wider to one side than this slope. A camera that turns faster than this sine is not followed.
 constexpr double kWidest = 2.5, kFastest = 0.5;
 constexpr double kRounding = 1e-6;
+// Slopes of a frustum's edges are off by less than this where a view's axes are orthonormal to single
+// precision.
+constexpr double kSkew = 1e-4;
 
 // The rotation by which the axes of one view became those of the next.
 class Turn {
@@ -60,7 +64,7 @@ void ViewsToCome::see(const View& view) {
   seen_ = std::min(seen_ + 1, 2u);
 }
 
-bool ViewsToCome::hold() {
+bool ViewsToCome::takeHeld() {
   if (left_ == 0 || !contain(view_)) {
     left_ = 0;
     return false;
@@ -105,7 +109,7 @@ void ViewsToCome::Extent::join(const Extent& other) {
   high_y = std::max(high_y, other.high_y);
   low_z = std::min(low_z, other.low_z);
   high_z = std::max(high_z, other.high_z);
-  before = before && other.before;
+  in_front = in_front && other.in_front;
 }
 
 ViewsToCome::Extent ViewsToCome::extentOf(const View& view) const {
@@ -161,16 +165,16 @@ bool ViewsToCome::plan() {
   if (!widen(kLeastTurn + kStrayTurn * turned * (views - 1))) {
     return false;
   }
-  const double back = std::max({0.0, backFrom(first_), backFrom(end_)});
+  const double back = std::max({0.0, backFor(first_), backFor(end_)});
   wide_.eye = view_.eye - wide_.forward * back;
   const double along = toWide(end_ - first_).z;
   wide_.near = 0.9 * (back + std::min(along, 0.0) - spread_ + view_.near * shown_.low_z);
   wide_.far = (back + std::max(along, 0.0) + spread_ + view_.far * shown_.high_z) * (1.0 + kRounding);
   viewers_.offsets = {first_ - wide_.eye, end_ - wide_.eye};
   viewers_.radius = spread_ * (1.0 + kRounding) + 0x1p-40 * maxComponent(abs(view_.eye));
-  viewers_.near_distance = nearDistance(view_);
+  viewers_.near_distance = nearDistance(view_) * (1.0 + kRounding);
   left_ = views;
-  return makeUsable(wide_) == nullptr && hold();
+  return makeUsable(wide_) == nullptr && takeHeld();
 }
 
 // Widens what is shown by an angle to all sides, and makes it the picture of wide_. False: it is too wide.
@@ -185,7 +189,7 @@ bool ViewsToCome::widen(double by) {
   const auto fits = [](double low, double high) {
     return low < 0.0 && high > 0.0 && -low < kWidest && high < kWidest;
   };
-  if (!shown_.before || !fits(shown_.low_x, shown_.high_x) || !fits(shown_.low_y, shown_.high_y)) {
+  if (!shown_.in_front || !fits(shown_.low_x, shown_.high_x) || !fits(shown_.low_y, shown_.high_y)) {
     return false;
   }
   const double width = shown_.high_x - shown_.low_x, height = shown_.high_y - shown_.low_y;
@@ -196,9 +200,9 @@ bool ViewsToCome::widen(double by) {
   return true;
 }
 
-// How far behind the eye of the frame that of wide_ must be so that it shows another eye, with what is around
-// that.
-double ViewsToCome::backFrom(const Vec3d& eye) const {
+// How far the eye of wide_ has to be moved back, from that of the frame, so that another eye and all within
+// spread_ of it lie in the infinite pyramid of its picture: low_x * z <= x <= high_x * z, and so for y.
+double ViewsToCome::backFor(const Vec3d& eye) const {
   const Vec3d at = toWide(eye - view_.eye);
   const double around = spread_ * (1.0 + kWidest) * (1.0 + kRounding);
   return std::max({around, (at.x + around) / shown_.high_x, (at.x - around) / shown_.low_x,
@@ -214,9 +218,9 @@ bool ViewsToCome::contain(const View& view) const {
   const Extent extent = extentOf(view);
   const Vec3d at = toWide(view.eye - wide_.eye);
   const auto within = [](double low, double high, double outer_low, double outer_high) {
-    return low > outer_low + kRounding && high < outer_high - kRounding;
+    return low > outer_low + kSkew && high < outer_high - kSkew;
   };
-  return extent.before && within(extent.low_x, extent.high_x, shown_.low_x, shown_.high_x) &&
+  return extent.in_front && within(extent.low_x, extent.high_x, shown_.low_x, shown_.high_x) &&
          within(extent.low_y, extent.high_y, shown_.low_y, shown_.high_y) && at.x >= shown_.low_x * at.z &&
          at.x <= shown_.high_x * at.z && at.y >= shown_.low_y * at.z && at.y <= shown_.high_y * at.z &&
          at.z + view.near * extent.low_z >= wide_.near && at.z + view.far * extent.high_z <= wide_.far;

@@ -17,8 +17,8 @@ class ViewsToCome {
 
   // A frame begins with this view, as makeUsable() leaves it.
   void see(const View& view);
-  // Whether what was planned for an earlier frame holds for this one, and is not for too many already.
-  bool hold();
+  // Whether what was planned for an earlier frame holds for this one, too; then it does for one frame less.
+  bool takeHeld();
   // Plans for this frame and the next ones, from how the camera came from the last frame to this one. False:
   // no view can be found for several frames, or the camera moves too fast.
   bool plan();
@@ -40,7 +40,7 @@ class ViewsToCome {
   // between these; and the z of those that are 1 long along the view's own axis.
   struct Extent {
     double low_x, high_x, low_y, high_y, low_z, high_z;
-    bool before;  // all of it lies before the eye
+    bool in_front;  // all of it lies before the eye
 
     void join(const Extent& other);
   };
@@ -51,7 +51,7 @@ class ViewsToCome {
   }
   Extent extentOf(const View& view) const;
   bool widen(double by);
-  double backFrom(const Vec3d& eye) const;
+  double backFor(const Vec3d& eye) const;
 
   std::uint32_t most_, left_ = 0;  // frames for which what was planned may still hold
   View last_, view_;               // of the last two frames

@@ -143,24 +143,27 @@ HWY_INLINE void prepareLanes(const GridLines& lines, const GridSweeps* sweeps, s
   const auto reachTo = [&](DoublesV swept) HWY_ATTR {
     return hn::IfThenElse(level, widest, hn::Min(widest, hn::Add(reach, swept)));
   };
-  store(reachTo(sweepOf(&GridSweeps::before)), out.reach_left);
-  store(reachTo(sweepOf(&GridSweeps::behind)), out.reach_right);
+  store(reachTo(sweepOf(&GridSweeps::left_of_line)), out.reach_left);
+  store(reachTo(sweepOf(&GridSweeps::right_of_line)), out.reach_right);
   const auto over = [](DoublesV length) HWY_ATTR { return hn::Div(set(4.0 * kPixel), length); };
   const auto beside = hn::Mul(hn::Add(hn::Add(steepness, set(1.0)), over(hn::Abs(dy))), margin);
   const auto along = hn::Mul(margin, hn::Add(set(1.0), over(hn::Max(hn::Abs(dx), set(1.0)))));
   const auto doubt = hn::IfThenElse(level, along, hn::Min(widest, hn::Add(beside, set(2.0))));
   store(doubt, out.doubt);
-  // The line of a swept edge goes on beyond its ends, and is known the less the farther it goes. It may meet
-  // the pixels whose centres are so near to it.
+  // Whether the line meets a pixel is known the less, the farther beyond the edge's ends it is: rounding an
+  // end by a unit turns the line by up to a unit for each length of the edge. Where an edge is hardly longer
+  // than that, its direction says nothing. Pixels: along the middle of a row, or of a level edge upwards.
+  constexpr double kShort = 4.0;
   const auto swept_x = hn::Max(leftwards, rightwards), swept_y = hn::Max(downwards, upwards);
-  const auto off_line = [&](DoublesV swept, DoublesV length) HWY_ATTR {
-    const auto beyond = hn::Div(hn::Add(swept, set(kPixel)), hn::Max(hn::Abs(length), set(1.0)));
-    return hn::Add(set(0.5 * kPixel), hn::Mul(hn::Mul(set(3.0), margin), beyond));
+  const auto on_line = [&](DoublesV swept, DoublesV length) HWY_ATTR {
+    const auto lengths = hn::Div(hn::Add(swept, set(kPixel)), hn::Max(hn::Abs(length), set(1.0)));
+    const auto known = hn::Add(set(0.5 * kPixel), hn::Mul(hn::Mul(set(3.0), margin), lengths));
+    return hn::IfThenElse(hn::Lt(hn::Abs(length), set(kShort)), widest, known);
   };
-  const auto on_line = hn::IfThenElse(level, off_line(swept_x, dx),
-                                      hn::Mul(hn::Add(steepness, set(1.0)), off_line(swept_y, dy)));
+  const auto meets_line = hn::IfThenElse(level, on_line(swept_x, dx),
+                                         hn::Mul(hn::Add(steepness, set(1.0)), on_line(swept_y, dy)));
   const auto unswept = hn::Eq(hn::Max(swept_x, swept_y), set(0.0));
-  store(hn::Min(widest, hn::Add(doubt, hn::IfThenZeroElse(unswept, on_line))), out.end_doubt);
+  store(hn::Min(widest, hn::Add(doubt, hn::IfThenZeroElse(unswept, meets_line))), out.end_doubt);
 }
 
 void prepareAll(const GridLines& lines, const GridSweeps* sweeps, const EdgeBuffer& buffer,

@@ -2,8 +2,10 @@
 
 // Edges of the boundary of a surface in a depth buffer, prepared for being drawn tile by tile.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -52,7 +54,10 @@ struct BoundaryEdge {
   // So near to the edge, along the middle of a row, or of a level edge upwards and downwards, it is unknown
   // on which side a pixel's centre is: see "The pixel" in docs/conservative.md.
   float doubt;
-  float end_doubt;                          // the same in rows that it does not cross from border to border
+  // The same in rows that it does not cross from border to border. There a swept edge may move over a point
+  // of the pixel that lies on the inner side of its line, though the way to it from the centre, on the outer
+  // side, met no more than the line beyond the edge's end. So that is all pixels that the line may meet.
+  float end_doubt;
   std::int32_t bottom, top;                 // of the edge, moved into the buffer
   std::int16_t first_row, last_row;         // that it may touch
   std::int16_t first_crossed, end_crossed;  // whose middle it crosses
@@ -65,6 +70,10 @@ struct BoundaryEdge {
   // Whether it may touch some of the rows of tiles from `first` to `last`.
   bool touches(std::int32_t first, std::int32_t last) const {
     return first_row < (last + 1) * kTileHeight && last_row >= first * kTileHeight;
+  }
+  // Places farther away from a buffer are moved to where it does not matter either.
+  static double within(double x, const EdgeBuffer& buffer) {
+    return std::min(std::max(x, -double{kBeyond}), buffer.width * double{kGridStep} + kBeyond);
   }
   // Whether the winding is greater to the right of it, if the surface lies to its left `value` times. Of a
   // level edge this is a convention.
@@ -80,18 +89,20 @@ struct BoundaryChain {
 // Edges are prepared in vectors of so many at most, which may be read from any edge of a list on.
 inline constexpr std::size_t kMostLanes = 8;
 
+// Makes room for so many numbers in each of the lists, and for whole vectors of them.
+inline void makeRoomInLanes(std::size_t count, std::initializer_list<std::vector<double>*> lists) {
+  for (std::vector<double>* list : lists) {
+    if (list->size() < count + kMostLanes) {
+      list->resize(2 * count + kMostLanes);
+    }
+  }
+}
+
 // Lines from one point to another, by coordinate.
 struct GridLines {
   std::vector<double> from_x{}, from_y{}, to_x{}, to_y{};  // as in GridPoint
 
-  // Makes room for so many.
-  void reserve(std::size_t count) {
-    if (from_x.size() < count + kMostLanes) {
-      for (std::vector<double>* list : {&from_x, &from_y, &to_x, &to_y}) {
-        list->resize(2 * count + kMostLanes);
-      }
-    }
-  }
+  void reserve(std::size_t count) { makeRoomInLanes(count, {&from_x, &from_y, &to_x, &to_y}); }
   void set(std::size_t i, const GridPoint& from, const GridPoint& to) {
     from_x[i] = from.x;
     from_y[i] = from.y;
@@ -100,21 +111,19 @@ struct GridLines {
   }
 };
 
-// How far lines are swept as the eye moves through a ViewerRegion, at least 0, in 256ths of a pixel.
+// How far lines are swept as the eye moves through a ViewerRegion, in 256ths of a pixel, at least 0. Each is
+// a bound for all that the line is swept over, as far as that is in the buffer.
 struct GridSweeps {
-  // Nothing of a line gets farther to the left, to the right, down or up than this.
+  // How far that reaches beyond the rectangle around the line.
   std::vector<double> left{}, right{}, down{}, up{};
-  // And along a row, nothing of it gets farther than this to the left or right of the line before, which goes
-  // on beyond its ends. Of a level line this has no meaning.
-  std::vector<double> before{}, behind{};
+  // How far it reaches, along a row, to either side of the straight line through both ends; not used of level
+  // lines.
+  std::vector<double> left_of_line{}, right_of_line{};
 
-  // Makes room for so many.
+  static constexpr double kInfinite = 4.0 * kLargestGrid;  // from any line to the buffer, and beyond it
+
   void reserve(std::size_t count) {
-    if (left.size() < count + kMostLanes) {
-      for (std::vector<double>* list : {&left, &right, &down, &up, &before, &behind}) {
-        list->resize(2 * count + kMostLanes);
-      }
-    }
+    makeRoomInLanes(count, {&left, &right, &down, &up, &left_of_line, &right_of_line});
   }
 };
 

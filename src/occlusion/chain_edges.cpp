@@ -14,8 +14,6 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr CameraPlaces kNoCamera{};
-
 // Does what PixelView and ChainEdges::pixelOf() do, with the same bits, and a point in each lane.
 class PointProjection {
  public:
@@ -26,19 +24,19 @@ class PointProjection {
       : view_(view), clip_depth_(clip_depth) {}
 
   // Returns whether none of the points is nearer than the clip depth.
-  // camera: null, or where to put their x, y and z in camera space.
+  // camera: null, or receives them in camera space, from number `at` on.
   HWY_INLINE bool project(const float* x, const float* y, const float* z, std::size_t count, double* pixel_x,
-                          double* pixel_y, const CameraPlaces& camera) const {
+                          double* pixel_y, CameraPoints* camera, std::size_t at) const {
     const DoublesV from_eye[3] = {load(x, view_.eye.x), load(y, view_.eye.y), load(z, view_.eye.z)};
     const DoublesV depth = along(view_.forward, from_eye);
     const DoublesV right = along(view_.right, from_eye), up = along(view_.up, from_eye);
     const DoublesV inverse = view_.orthographic ? set(1.0) : hn::Div(set(1.0), depth);
     hn::StoreU(place(right, inverse, view_.scale_x, view_.middle_x), kDoubles, pixel_x);
     hn::StoreU(place(up, inverse, view_.scale_y, view_.middle_y), kDoubles, pixel_y);
-    if (camera.x != nullptr) {
-      hn::StoreU(right, kDoubles, camera.x);
-      hn::StoreU(up, kDoubles, camera.y);
-      hn::StoreU(depth, kDoubles, camera.z);
+    if (camera != nullptr) {
+      hn::StoreU(right, kDoubles, camera->x.data() + at);
+      hn::StoreU(up, kDoubles, camera->y.data() + at);
+      hn::StoreU(depth, kDoubles, camera->z.data() + at);
     }
     return hn::AllTrue(kDoubles,
                        hn::Or(hn::Ge(depth, set(clip_depth_)), hn::Not(hn::FirstN(kDoubles, count))));
@@ -67,18 +65,18 @@ class PointProjection {
 
 // ends: as in ChainEdges. Returns whether none of them is nearer than the clip depth; the lines of those that
 // are have no meaning.
-// swept: null, or receives the same ends in camera space.
+// camera: null, or receives the same lines in camera space.
 bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
-                 GridLines& lines, SweptLines* swept) {
+                 GridLines& lines, CameraLines* camera) {
   const PointProjection projection(view, clip_depth);
   const std::size_t lanes = hn::Lanes(PointProjection::Doubles());
   bool all = true;
   for (std::size_t i = 0; i < count; i += lanes) {
     const std::size_t used = std::min(lanes, count - i);
     all &= projection.project(ends[0] + i, ends[1] + i, ends[2] + i, used, lines.from_x.data() + i,
-                              lines.from_y.data() + i, swept != nullptr ? swept->from.at(i) : kNoCamera);
+                              lines.from_y.data() + i, camera != nullptr ? &camera->from : nullptr, i);
     all &= projection.project(ends[3] + i, ends[4] + i, ends[5] + i, used, lines.to_x.data() + i,
-                              lines.to_y.data() + i, swept != nullptr ? swept->to.at(i) : kNoCamera);
+                              lines.to_y.data() + i, camera != nullptr ? &camera->to : nullptr, i);
   }
   return all;
 }
@@ -98,7 +96,7 @@ void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip
   view_ = view;
   clip_depth_ = clip_depth;
   buffer_ = buffer;
-  sweeps_ = view.viewers.isMore();
+  several_viewers_ = view.viewers.several();
   chains_.clear();
   cuts_.clear();
   count_ = 0;
@@ -177,9 +175,9 @@ void ChainEdges::clip(std::uint32_t edge) {
     // To the right of the buffer, where no edge matters.
     constexpr GridPoint kNowhere{kLargestGrid, 0.0};
     lines_.set(edge, kNowhere, kNowhere);
-    if (sweeps_) {
+    if (several_viewers_) {
       constexpr double kFarAway = 1e30;
-      swept_.set(edge, {kFarAway, 0.0, 1.0}, {kFarAway, 0.0, 1.0});
+      camera_lines_.set(edge, {kFarAway, 0.0, 1.0}, {kFarAway, 0.0, 1.0});
     }
   }
 }
@@ -187,54 +185,61 @@ void ChainEdges::clip(std::uint32_t edge) {
 // from, to: camera space, not nearer than the clip depth.
 void ChainEdges::setLine(std::uint32_t edge, const Vec3d& from, const Vec3d& to) {
   lines_.set(edge, pixelOf(from), pixelOf(to));
-  if (sweeps_) {
-    swept_.set(edge, from, to);
+  if (several_viewers_) {
+    camera_lines_.set(edge, from, to);
   }
 }
 
+// An edge that gets much nearer to the viewers at one end than at the other is swept much farther there. So
+// it is divided, and the pieces are chains of their own.
 void ChainEdges::divideSwept() {
-  constexpr double kRatio = 3.0;
-  constexpr std::uint32_t kMostPieces = 8;
-  double nearer = view_.viewers.radius;
-  nearer += std::max(0.0, std::max(view_.viewers.offsets[0].z, view_.viewers.offsets[1].z));
-  const std::uint32_t whole = count_;
-  for (std::uint32_t edge = 0; edge < whole; ++edge) {
-    const Vec3d from = swept_.from.point(edge), to = swept_.to.point(edge);
-    const double nearest = std::min(from.z, to.z) - nearer, farthest = std::max(from.z, to.z) - nearer;
-    const double least = std::max(nearest, 0.05 * clip_depth_);
-    if (!(farthest > kRatio * least)) {
-      continue;
+  const std::size_t chains = chains_.size();
+  for (std::size_t chain = 0; chain < chains; ++chain) {
+    const BoundaryChain whole = chains_[chain];
+    for (std::uint32_t edge = whole.first; edge < whole.first + whole.count; ++edge) {
+      divideSwept(chain, edge);
     }
-    lines_.reserve(count_ + kMostPieces);
-    swept_.reserve(count_ + kMostPieces);
-    // From the far end on.
-    const bool ascending = to.z > from.z;
-    const Vec3d far_end = ascending ? to : from, near_end = ascending ? from : to;
-    Rest rest{edge, count_, 0};
-    Vec3d end = far_end;
-    double depth = farthest;
-    for (std::uint32_t piece = 0; piece + 1 < kMostPieces && depth > kRatio * least; ++piece) {
-      depth /= kRatio;
-      const double t = (depth + nearer - near_end.z) / (far_end.z - near_end.z);
-      const Vec3d next = near_end + (far_end - near_end) * t;
-      setLine(count_++, ascending ? next : end, ascending ? end : next);
-      ++rest.count;
-      end = next;
-    }
-    setLine(edge, ascending ? near_end : end, ascending ? end : near_end);
-    rests_.push_back(rest);
   }
+}
+
+void ChainEdges::divideSwept(std::size_t chain, std::uint32_t edge) {
+  constexpr double kRatio = 3.0;        // of depths beyond all viewers
+  constexpr double kLeastDepth = 0.05;  // what is nearer is not told apart; of the clip depth
+  constexpr std::uint32_t kMostPieces = 7;
+  const ViewerRegion& viewers = view_.viewers;
+  const double reach = viewers.radius + std::max({0.0, viewers.offsets[0].z, viewers.offsets[1].z});
+  const Vec3d from = camera_lines_.from.point(edge), to = camera_lines_.to.point(edge);
+  const double least = std::max(std::min(from.z, to.z) - reach, kLeastDepth * clip_depth_);
+  double depth = std::max(from.z, to.z) - reach;
+  if (!(depth > kRatio * least)) {
+    return;
+  }
+  lines_.reserve(count_ + kMostPieces);
+  camera_lines_.reserve(count_ + kMostPieces);
+  const bool ascending = to.z > from.z;
+  const Vec3d far_end = ascending ? to : from, near_end = ascending ? from : to;
+  const std::uint32_t first = count_;
+  Vec3d end = far_end;
+  while (depth > kRatio * least && count_ < first + kMostPieces) {
+    depth /= kRatio;
+    const Vec3d next =
+        near_end + (far_end - near_end) * ((depth + reach - near_end.z) / (far_end.z - near_end.z));
+    setLine(count_++, ascending ? next : end, ascending ? end : next);
+    end = next;
+  }
+  setLine(edge, ascending ? near_end : end, ascending ? end : near_end);
+  chains_.push_back({first, count_ - first, chains_[chain].value});
 }
 
 std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   lines_.reserve(count_);
-  if (sweeps_) {
-    swept_.reserve(count_);
+  if (several_viewers_) {
+    camera_lines_.reserve(count_);
   }
   const std::array<const float*, kCoordinates> ends{ends_[0].data(), ends_[1].data(), ends_[2].data(),
                                                     ends_[3].data(), ends_[4].data(), ends_[5].data()};
-  SweptLines* const swept = sweeps_ ? &swept_ : nullptr;
-  if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_, swept)) {
+  CameraLines* const camera = several_viewers_ ? &camera_lines_ : nullptr;
+  if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_, camera)) {
     for (std::uint32_t edge = 0; edge < count_; ++edge) {
       clip(edge);
     }
@@ -242,28 +247,18 @@ std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   for (const Cut& cut : cuts_) {
     setLine(cut.edge, cut.from, cut.to);
   }
-  rests_.clear();
-  if (sweeps_) {
+  if (several_viewers_) {
     divideSwept();
-    findSweeps(view_, clip_depth_, swept_, count_, grid_sweeps_);
+    findSweeps(view_, clip_depth_, camera_lines_, lines_, count_, sweeps_);
   }
   prepared_.resize(std::max<std::size_t>(prepared_.size(), count_));
-  prepareEdges(lines_, sweeps_ ? &grid_sweeps_ : nullptr, buffer_, std::span(prepared_).first(count_));
+  prepareEdges(lines_, several_viewers_ ? &sweeps_ : nullptr, buffer_, std::span(prepared_).first(count_));
   const auto before = static_cast<std::uint32_t>(edges_.size());
-  std::size_t rest = 0;
   for (const BoundaryChain& chain : chains_) {
     const auto first = static_cast<std::uint32_t>(edges_.size());
     for (std::uint32_t edge = chain.first; edge < chain.first + chain.count; ++edge) {
       if (prepared_[edge].matters) {
         edges_.push_back(prepared_[edge]);
-      }
-      if (rest < rests_.size() && rests_[rest].edge == edge) {
-        for (std::uint32_t piece = 0; piece < rests_[rest].count; ++piece) {
-          if (prepared_[rests_[rest].first + piece].matters) {
-            edges_.push_back(prepared_[rests_[rest].first + piece]);
-          }
-        }
-        ++rest;
       }
     }
     if (edges_.size() > first) {

@@ -45,6 +45,7 @@ class ChainEdges {
   void makeRoom(std::size_t more);
   void clip(std::uint32_t edge);
   void divideSwept();
+  void divideSwept(std::size_t chain, std::uint32_t edge);
   void setLine(std::uint32_t edge, const Vec3d& from, const Vec3d& to);
   Vec3d toCamera(const Vec3f& point) const { return view_.toCamera(Vec3d(point) - view_.eye); }
   GridPoint pixelOf(const Vec3d& camera) const;
@@ -60,15 +61,10 @@ class ChainEdges {
   std::uint32_t count_ = 0;  // of ends_ that are used
   std::vector<Cut> cuts_;
   GridLines lines_;
-  bool sweeps_ = false;  // the view is drawn for more than one viewer
-  SweptLines swept_;     // the same lines, if it is
-  // Edges that are swept much farther at one end than at the other are divided: `count` pieces behind the
-  // other lines are the rest of `edge`; ascending.
-  struct Rest {
-    std::uint32_t edge = 0, first = 0, count = 0;
-  };
-  std::vector<Rest> rests_;
-  GridSweeps grid_sweeps_;
+  // If the view is drawn for several viewers: the same lines, and how far they are swept.
+  bool several_viewers_ = false;
+  CameraLines camera_lines_;
+  GridSweeps sweeps_;
   std::vector<BoundaryEdge> prepared_;
 
   std::vector<BoundaryEdge> edges_;

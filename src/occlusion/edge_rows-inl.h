@@ -65,7 +65,7 @@ class EdgeRows {
   // rises: to the right of the edge the winding is greater; of a level edge this is a convention.
   // above_inner: of a level edge, the surface lies above it.
   HWY_INLINE EdgeRows(const BoundaryEdge& edge, const EdgeBuffer& buffer, bool rises, bool above_inner)
-      : edge_(edge), last_place_(buffer.width * kPixel + kBeyond), rises_(rises), above_inner_(above_inner) {}
+      : edge_(edge), buffer_(buffer), rises_(rises), above_inner_(above_inner) {}
 
   // Calls use(tile_row, lane, from, to, touched, crossed, middle, doubt) for groups of lanes of the rows of
   // tiles from `first` to `last` that the edge may touch. from, to: the least and the greatest place that the
@@ -84,7 +84,7 @@ class EdgeRows {
   }
 
  private:
-  static constexpr double kPixel = kGridStep, kBeyond = BoundaryEdge::kBeyond;
+  static constexpr double kPixel = kGridStep, kFar = kLargestGrid;
 
   // Calls use(tile_row, x). x: where the edge's line crosses the lower border of the tiles.
   template <typename Use>
@@ -102,8 +102,7 @@ class EdgeRows {
     const auto step = hn::Set(kPlaces, static_cast<float>(edge_.slope * kPixel));
     const auto doubt = hn::Set(kPlaces, edge_.doubt), end_doubt = hn::Set(kPlaces, edge_.end_doubt);
     forTileRows(first, last, [&](std::int32_t tile_row, double x) HWY_ATTR {
-      const double place = std::min(std::max(x, -kBeyond), last_place_);
-      const auto base = hn::Set(kPlaces, static_cast<float>(place));
+      const auto base = hn::Set(kPlaces, static_cast<float>(BoundaryEdge::within(x, buffer_)));
       forLanes([&](std::int32_t lane) HWY_ATTR {
         const auto row = hn::Iota(kPlaces, static_cast<float>(lane));
         const auto below = hn::Add(hn::Mul(row, step), base), above = hn::Add(below, step);
@@ -121,8 +120,9 @@ class EdgeRows {
     const hn::Rebind<float, decltype(d)> single;
     HWY_ALIGN float below[kTileHeight], above[kTileHeight], middle[kTileHeight];
     const auto step = hn::Set(d, kPixel * edge_.slope);
+    const double least = BoundaryEdge::within(-kFar, buffer_), most = BoundaryEdge::within(kFar, buffer_);
     const auto place = [&](hn::Vec<decltype(d)> v) HWY_ATTR {
-      return hn::DemoteTo(single, hn::Min(hn::Max(v, hn::Set(d, -kBeyond)), hn::Set(d, last_place_)));
+      return hn::DemoteTo(single, hn::Min(hn::Max(v, hn::Set(d, least)), hn::Set(d, most)));
     };
     forTileRows(first, last, [&](std::int32_t tile_row, double x) HWY_ATTR {
       for (std::int32_t i = 0; i < kTileHeight; i += static_cast<std::int32_t>(hn::Lanes(d))) {
@@ -143,7 +143,8 @@ class EdgeRows {
   HWY_INLINE void forLevelRows(std::int32_t first, std::int32_t last, Use&& use) const {
     // Heights in a buffer are whole numbers below 2^22, so that single precision is exact.
     const auto at = hn::Set(kPlaces, static_cast<float>(edge_.x)), left = hn::Set(kPlaces, edge_.left);
-    const float before = static_cast<float>(-kBeyond), behind = static_cast<float>(last_place_);
+    const auto before = static_cast<float>(BoundaryEdge::within(-kFar, buffer_)),
+               behind = static_cast<float>(BoundaryEdge::within(kFar, buffer_));
     const bool inner_before = above_inner_ == rises_;
     const auto above = hn::Set(kPlaces, inner_before ? before : behind),
                below = hn::Set(kPlaces, inner_before ? behind : before);
@@ -184,7 +185,7 @@ class EdgeRows {
   }
 
   const BoundaryEdge& edge_;
-  double last_place_;  // those beyond it are moved there
+  const EdgeBuffer& buffer_;
   bool rises_, above_inner_;
 };
 

@@ -134,7 +134,7 @@ void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
 
 void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
                       const ParallelFor& parallel_for) {
-  if (!impl_->view.viewers.isMore()) {
+  if (!impl_->view.viewers.several()) {
     impl_->draw(set, chosen, parallel_for);
   }
 }

@@ -64,7 +64,7 @@ void SurfaceView::setViewers() {
   viewers_min_ = Vec3d(kNobody, kNobody, kNobody);
   viewers_max_ = -viewers_min_;
   const ViewerRegion& viewers = view_.viewers;
-  if (viewers.isMore()) {
+  if (viewers.several()) {
     const double around = tooNear();
     viewers_min_ = min(Vec3d(), min(viewers.offsets[0], viewers.offsets[1])) - Vec3d(around, around, around);
     viewers_max_ = max(Vec3d(), max(viewers.offsets[0], viewers.offsets[1])) + Vec3d(around, around, around);
@@ -367,7 +367,7 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
     return false;
   }
   extent.cut = !(extent.nearest > clip_depth_);
-  const Vec3d low = middle - size, high = middle + size;
+  const Vec3d spare(rounding, rounding, rounding), low = middle - size - spare, high = middle + size + spare;
   extent.among_viewers = low.x < viewers_max_.x && high.x > viewers_min_.x && low.y < viewers_max_.y &&
                          high.y > viewers_min_.y && low.z < viewers_max_.z && high.z > viewers_min_.z;
   extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;

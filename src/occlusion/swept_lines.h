@@ -12,16 +12,11 @@
 
 namespace sightline::occlusion {
 
-// Where the coordinates of some points of a list begin.
-struct CameraPlaces {
-  double *x = nullptr, *y = nullptr, *z = nullptr;
-};
-
 // Points in camera space, by coordinate.
 struct CameraPoints {
   std::vector<double> x{}, y{}, z{};
 
-  CameraPlaces at(std::size_t i) { return {x.data() + i, y.data() + i, z.data() + i}; }
+  void reserve(std::size_t count) { makeRoomInLanes(count, {&x, &y, &z}); }
   Vec3d point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   void set(std::size_t i, const Vec3d& point) {
     x[i] = point.x;
@@ -31,18 +26,12 @@ struct CameraPoints {
 };
 
 // Lines from one point to another.
-struct SweptLines {
+struct CameraLines {
   CameraPoints from{}, to{};
 
-  // Makes room for so many.
   void reserve(std::size_t count) {
-    if (from.x.size() < count + kMostLanes) {
-      for (CameraPoints* points : {&from, &to}) {
-        for (std::vector<double>* list : {&points->x, &points->y, &points->z}) {
-          list->resize(2 * count + kMostLanes);
-        }
-      }
-    }
+    from.reserve(count);
+    to.reserve(count);
   }
   void set(std::size_t i, const Vec3d& begin, const Vec3d& end) {
     from.set(i, begin);
@@ -50,10 +39,10 @@ struct SweptLines {
   }
 };
 
-// Sets the sweeps of the first `count` lines, whose ends are not nearer than clip_depth. Those of a line that
-// no viewer sees in the buffer, as the eye's lines of sight go, are 0; those of one that some viewer may pass
-// are larger than the buffer.
-void findSweeps(const PixelView& view, double clip_depth, const SweptLines& lines, std::size_t count,
-                GridSweeps& sweeps);
+// Sets the sweeps of the first `count` lines, whose ends are not nearer than clip_depth. grid: the lines'
+// images. Sweeps that do not come into the buffer are 0; those of a line that some viewer may pass are
+// infinite, to one side at least.
+void findSweeps(const PixelView& view, double clip_depth, const CameraLines& lines, const GridLines& grid,
+                std::size_t count, GridSweeps& sweeps);
 
 }  // namespace sightline::occlusion

@@ -72,10 +72,7 @@ class TileEdge {
   // Leaves out tiles that the edge does not touch in this row of them.
   HWY_INLINE void narrow(double x, std::int32_t& first, std::int32_t& last) const {
     constexpr double kTiles = 1.0 / (kWide * kGridStep), kRounding = 2.0, kMost = 1 << 16;
-    // As in EdgeRows: what the edge may touch is no wider than twice kBeyond and the buffer.
-    constexpr double kBeyond = BoundaryEdge::kBeyond;
-    const double begin_x =
-                     std::min(std::max(x, -kBeyond), target_.buffer.width * double{kGridStep} + kBeyond),
+    const double begin_x = BoundaryEdge::within(x, target_.buffer),
                  end_x = begin_x + kHigh * kGridStep * edge_.slope;
     const double low = (std::min(begin_x, end_x) - edge_.reach_left - kRounding) * kTiles,
                  high = (std::max(begin_x, end_x) + edge_.reach_right + kRounding) * kTiles;

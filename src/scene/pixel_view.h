@@ -165,7 +165,7 @@ struct PixelView {
   // A region of several viewers needs a perspective view: lines of sight then begin at them.
   bool sane(const ViewerRegion& region) const {
     const double size = maxComponent(max(abs(region.offsets[0]), abs(region.offsets[1])));
-    return !region.isMore() ||
+    return !region.several() ||
            (!orthographic && size < kLargestScale && region.radius >= 0.0 && region.radius < kLargestScale &&
             region.near_distance >= 0.0 && region.near_distance < kLargestScale);
   }

@@ -203,7 +203,7 @@ std::size_t framesHeld(ViewsToCome& views, Motion motion) {
   std::size_t held = 0;
   for (; held < 100; ++held) {
     views.see(motion.next());
-    if (!views.hold()) {
+    if (!views.takeHeld()) {
       break;
     }
   }
@@ -245,9 +245,9 @@ TEST(ViewsToCome, NothingIsPlannedForWhatCannotBeFollowed) {
   views.see(before);
   views.see(before);
   EXPECT_TRUE(views.plan());
-  EXPECT_TRUE(views.hold());
+  EXPECT_TRUE(views.takeHeld());
   views.forget();
-  EXPECT_FALSE(views.hold());
+  EXPECT_FALSE(views.takeHeld());
   views.see(before);
   EXPECT_FALSE(views.plan()) << "there was no frame before";
 }
@@ -262,7 +262,7 @@ TEST(ViewsToCome, AnAnswerIsHeldForAtMostAsManyFramesAsWereAskedFor) {
       ASSERT_TRUE(views.plan());
       // One of them is the frame that was planned in.
       EXPECT_EQ(framesHeld(views, motion), std::min(most, 16u) - 1) << most << ", " << step;
-      EXPECT_FALSE(views.hold());
+      EXPECT_FALSE(views.takeHeld());
     }
   }
   // Also if the camera comes back.
@@ -270,9 +270,9 @@ TEST(ViewsToCome, AnAnswerIsHeldForAtMostAsManyFramesAsWereAskedFor) {
   views.see(plainView());
   views.see(plainView());
   ASSERT_TRUE(views.plan());
-  EXPECT_TRUE(views.hold());
+  EXPECT_TRUE(views.takeHeld());
   views.end();
-  EXPECT_FALSE(views.hold());
+  EXPECT_FALSE(views.takeHeld());
 }
 
 TEST(ViewsToCome, TheNearerThingsAreAndTheFasterTheCameraTheFewerViewsArePlanned) {
@@ -494,8 +494,9 @@ TEST(ViewsAtOnce, OnlyWhatHidesForAllViewersIsHeld) {
     return heldFrames(other, views);
   };
   EXPECT_GT(heldWith(depthPyramid()), 8u);
-  EXPECT_GT(heldWith(whileItPays(depthPyramid(), {.object_us = 1e6, .triangle_us = 1e6})), 8u);
   EXPECT_EQ(heldWith(depthPyramid(), true), 0u);
+  // What culling saves is compared with what it costs frame by frame.
+  EXPECT_EQ(heldWith(whileItPays(depthPyramid(), {.object_us = 1e6, .triangle_us = 1e6})), 0u);
   EXPECT_EQ(heldWith(depthPyramid({.surfaces = SurfaceUse::kNone})), 0u);
   EXPECT_EQ(heldWith(depthPyramid({.surfaces = SurfaceUse::kWithOccluders})), 0u);
   EXPECT_EQ(heldWith(opacityMap({.surfaces = SurfaceUse::kAlone})), 0u);

@@ -26,7 +26,7 @@ struct SweptCase {
   View view;
   PixelView pixels;
   double clip_depth = 0.0;
-  SweptLines lines;
+  CameraLines lines;
 };
 
 View perspectiveView(test::ViewRandom& random) {
@@ -119,6 +119,15 @@ Vec3d viewerOf(test::ViewRandom& random, const ViewerRegion& region) {
          around * (region.radius * (1.0 - 1e-12) / std::max(length(around), 1e-3));
 }
 
+GridLines imagesOf(const PixelView& view, const CameraLines& lines, std::size_t count) {
+  GridLines images;
+  images.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    images.set(i, rounded(imageOf(view, lines.from.point(i))), rounded(imageOf(view, lines.to.point(i))));
+  }
+  return images;
+}
+
 struct Counts {
   std::size_t points = 0, unswept = 0, passed = 0;
 };
@@ -172,8 +181,8 @@ void judge(const SweptCase& made, std::size_t i, const GridSweeps& sweeps, const
     if (height != 0.0) {
       const double up = (at.y - begin.y) / height, across = at.x - begin.x - (end.x - begin.x) * up;
       const double of_slope = rounding * (1.0 + std::abs(slope)) * (1.0 + std::abs(up));
-      EXPECT_GE(across, -sweeps.before[i] - of_slope) << where;
-      EXPECT_LE(across, sweeps.behind[i] + of_slope) << where;
+      EXPECT_GE(across, -sweeps.left_of_line[i] - of_slope) << where;
+      EXPECT_LE(across, sweeps.right_of_line[i] + of_slope) << where;
     }
     const auto [least, most] =
         placesIn(edge, view.width, static_cast<std::int32_t>(std::floor(at.y / kGridStep)));
@@ -188,14 +197,9 @@ TEST(SweptLines, AreWithinTheirSweepsForAllViewers) {
     if (!made.pixels.sane()) {
       continue;
     }
+    const GridLines grid = imagesOf(made.pixels, made.lines, kLines);
     GridSweeps sweeps;
-    findSweeps(made.pixels, made.clip_depth, made.lines, kLines, sweeps);
-    GridLines grid;
-    grid.reserve(kLines);
-    for (std::size_t i = 0; i < kLines; ++i) {
-      grid.set(i, rounded(imageOf(made.pixels, made.lines.from.point(i))),
-               rounded(imageOf(made.pixels, made.lines.to.point(i))));
-    }
+    findSweeps(made.pixels, made.clip_depth, made.lines, grid, kLines, sweeps);
     std::vector<BoundaryEdge> edges(kLines);
     prepareEdges(
         grid, &sweeps,
@@ -203,9 +207,10 @@ TEST(SweptLines, AreWithinTheirSweepsForAllViewers) {
     test::ViewRandom random(~seed);
     for (std::size_t i = 0; i < kLines; ++i) {
       const bool unswept = sweeps.left[i] == 0.0 && sweeps.right[i] == 0.0 && sweeps.down[i] == 0.0 &&
-                           sweeps.up[i] == 0.0 && sweeps.before[i] == 0.0 && sweeps.behind[i] == 0.0;
+                           sweeps.up[i] == 0.0 && sweeps.left_of_line[i] == 0.0 &&
+                           sweeps.right_of_line[i] == 0.0;
       counts.unswept += unswept ? 1 : 0;
-      counts.passed += sweeps.before[i] > BoundaryEdge::kBeyond ? 1 : 0;
+      counts.passed += sweeps.left_of_line[i] > BoundaryEdge::kBeyond ? 1 : 0;
       const std::size_t before = counts.points;
       judge(made, i, sweeps, edges[i], random, counts,
             "seed " + std::to_string(seed) + ", line " + std::to_string(i));
@@ -245,7 +250,7 @@ TEST(SweptEdges, LinesThatMeetAPixelBeyondTheirEndsAreTooNearToItsCentre) {
     sweeps.right[0] = random.in(1.0, most);
     sweeps.down[0] = random.in(1.0, most);
     sweeps.up[0] = random.in(1.0, most);
-    sweeps.before[0] = sweeps.behind[0] = 3.0 * most;
+    sweeps.left_of_line[0] = sweeps.right_of_line[0] = 3.0 * most;
     GridLines lines;
     lines.reserve(1);
     lines.set(0, from, to);
@@ -317,8 +322,8 @@ TEST(SweptEdges, ThePixelsThatAreNotCoveredAreThoseThatTheEdgeMayTouch) {
     GridSweeps sweeps;
     sweeps.reserve(kEdges);
     const double least_sweep = random.below(3) == 0 ? 1e6 : 1.0;
-    for (std::vector<double>* side :
-         {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up, &sweeps.before, &sweeps.behind}) {
+    for (std::vector<double>* side : {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up,
+                                      &sweeps.left_of_line, &sweeps.right_of_line}) {
       std::fill_n(side->begin(), kEdges, 0.0);
       (*side)[kThere] = (*side)[kBack] = random.below(6) == 0 ? 0.0 : random.sized(least_sweep, 1e8);
     }
@@ -374,22 +379,22 @@ TEST(SweptLines, AreTightAroundWhatIsSeenFarAway) {
   constexpr std::uint32_t kSize = 200;
   // The viewer may be up to a metre to the right: what is 10 metres away is swept by 10 pixels to the left.
   const PixelView pixels(view, kSize, kSize, {.offsets = {Vec3d(1, 0, 0), Vec3d()}});
-  SweptLines lines;
+  CameraLines lines;
   lines.reserve(2);
   lines.set(0, {0, -1, 10}, {0, 1, 10});
   lines.set(1, {30, -1, 10}, {30, 1, 10});  // to the right of the buffer for all of them
   GridSweeps sweeps;
-  findSweeps(pixels, 0.1, lines, 2, sweeps);
+  findSweeps(pixels, 0.1, lines, imagesOf(pixels, lines, 2), 2, sweeps);
   constexpr double kSpare = 2.0;  // 256ths of a pixel, for rounding
-  for (const std::vector<double>* side : {&sweeps.left, &sweeps.before}) {
+  for (const std::vector<double>* side : {&sweeps.left, &sweeps.left_of_line}) {
     EXPECT_GE((*side)[0], 10.0 * kGridStep);
     EXPECT_LE((*side)[0], 10.0 * kGridStep + kSpare);
   }
-  for (const std::vector<double>* side : {&sweeps.right, &sweeps.behind, &sweeps.down, &sweeps.up}) {
+  for (const std::vector<double>* side : {&sweeps.right, &sweeps.right_of_line, &sweeps.down, &sweeps.up}) {
     EXPECT_LE((*side)[0], kSpare);
   }
   for (const std::vector<double>* side :
-       {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up, &sweeps.before, &sweeps.behind}) {
+       {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up, &sweeps.left_of_line, &sweeps.right_of_line}) {
     EXPECT_EQ((*side)[1], 0.0);
   }
 }
@@ -399,8 +404,8 @@ TEST(SweptLines, AreTheSameWithEveryInstructionSet) {
   ASSERT_GE(targets.size(), 2u);
   const auto bitsOf = [](const GridSweeps& sweeps) {
     std::vector<std::uint64_t> bits;
-    for (const std::vector<double>* side :
-         {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up, &sweeps.before, &sweeps.behind}) {
+    for (const std::vector<double>* side : {&sweeps.left, &sweeps.right, &sweeps.down, &sweeps.up,
+                                            &sweeps.left_of_line, &sweeps.right_of_line}) {
       for (std::size_t i = 0; i < kLines; ++i) {
         bits.push_back(std::bit_cast<std::uint64_t>((*side)[i]));
       }
@@ -409,12 +414,13 @@ TEST(SweptLines, AreTheSameWithEveryInstructionSet) {
   };
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const SweptCase made = randomCase(seed);
+    const GridLines grid = imagesOf(made.pixels, made.lines, kLines);
     GridSweeps sweeps;
-    findSweeps(made.pixels, made.clip_depth, made.lines, kLines, sweeps);
+    findSweeps(made.pixels, made.clip_depth, made.lines, grid, kLines, sweeps);
     const std::vector<std::uint64_t> first = bitsOf(sweeps);
     for (const std::int64_t target : targets) {
       hwy::SetSupportedTargetsForTest(target);
-      findSweeps(made.pixels, made.clip_depth, made.lines, kLines, sweeps);
+      findSweeps(made.pixels, made.clip_depth, made.lines, grid, kLines, sweeps);
       hwy::SetSupportedTargetsForTest(0);
       EXPECT_EQ(bitsOf(sweeps), first) << "seed " << seed << ", " << hwy::TargetName(target);
     }

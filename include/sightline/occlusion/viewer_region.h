@@ -17,7 +17,7 @@ struct ViewerRegion {
   double near_distance = 0.0;
 
   // Whether it is anything but the view that the buffer is drawn for.
-  bool isMore() const {
+  bool several() const {
     return radius > 0.0 || near_distance > 0.0 || offsets[0] != Vec3d() || offsets[1] != Vec3d();
   }
 };

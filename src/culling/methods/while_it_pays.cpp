@@ -29,7 +29,6 @@ class WhileItPays final : public CullingMethod {
   }
   bool wantsOccluders() const override { return !pays_.suspended() && method_->wantsOccluders(); }
   bool drawsBodies() const override { return method_->drawsBodies(); }
-  bool answersForRegions() const override { return !pays_.suspended() && method_->answersForRegions(); }
 
   void prepare(const CullingScene& scene) override {
     method_->prepare(scene);

@@ -81,12 +81,12 @@ CoverageMap coverageOf(const WalkRecord& record, const KeptFrame& frame, const O
   KeptDepthBuffer alone;
   if (surfaces && !frame.occluders.empty()) {
     Rasteriser rasteriser(setting.raster);
-    rasteriser.begin(frame.view);
+    rasteriser.begin(frame.depth_view);
     rasteriser.draw(occluders, frame.occluders);
     alone = copyOf(rasteriser.depthBuffer());
   }
   return coverageMap(frame.depth_buffer, alone, surfaces ? CoveredBy::kSurface : CoveredBy::kOccluder,
-                     frame.view.orthographic);
+                     frame.depth_view.orthographic);
 }
 
 // 0.6984 -> "69.8"; only all of it is "100.0".
@@ -152,7 +152,7 @@ class PictureMaker {
 
   void addCoverage(const KeptFrame& frame) {
     const CoverageMap map = coverageOf(record_, frame, occluders_);
-    add(coverageImage(map, frame.view.aspect, std::max(record_.width, kMinCoverageWidth)), "coverage",
+    add(coverageImage(map, frame.depth_view.aspect, std::max(record_.width, kMinCoverageWidth)), "coverage",
         {.caption = coverageCaption(record_, frame, map), .frame = frame.frame, .coverage = true});
   }
 
@@ -244,6 +244,7 @@ KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint
   kept.visible.assign(shown.visible().begin(), shown.visible().end());
   kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
   kept.depth_buffer = copyOf(shown.depthBuffer());
+  kept.depth_view = shown.depthBufferView();
   kept.triangles_in_frustum = data.trianglesOf(kept.in_frustum);
   kept.triangles_visible = data.trianglesOf(kept.visible);
   return kept;

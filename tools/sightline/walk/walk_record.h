@@ -89,6 +89,7 @@ struct KeptFrame {
   std::vector<OccluderId> occluders;
   std::uint64_t triangles_in_frustum = 0, triangles_visible = 0;
   KeptDepthBuffer depth_buffer;  // empty if the method has none
+  View depth_view;               // of that; wider than `view` where several views were culled at once
 };
 
 // A picture that culling has changed.
