@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "sightline/occlusion/rasteriser.h"
-#include "sightline/occlusion/viewer_region.h"
 #include "sightline/scene/camera.h"
+#include "sightline/scene/viewer_region.h"
 
 namespace sightline::culling {
 

@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "sightline/math/mat4.h"
-#include "sightline/occlusion/viewer_region.h"
+#include "sightline/scene/viewer_region.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {

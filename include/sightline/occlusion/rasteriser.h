@@ -10,8 +10,8 @@
 #include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
-#include "sightline/occlusion/viewer_region.h"
 #include "sightline/scene/camera.h"
+#include "sightline/scene/viewer_region.h"
 
 namespace sightline {
 
