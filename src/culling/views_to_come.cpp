@@ -22,8 +22,8 @@ constexpr double kStray = 0.01, kStrayTurn = 0.25, kLeastTurn = 0.005;
 // No picture is wider to one side than this slope. A camera that turns faster than this sine is not followed.
 constexpr double kWidest = 2.5, kFastest = 0.5;
 constexpr double kRounding = 1e-6;
-// Slopes of a frustum's edges are off by less than this where a view's axes are orthonormal to single
-// precision.
+// Slopes of a frustum's edges, and depths along them, are off by less than this where a view's axes are
+// orthonormal to single precision.
 constexpr double kSkew = 1e-4;
 
 // The rotation by which the axes of one view became those of the next.
@@ -223,7 +223,8 @@ bool ViewsToCome::contain(const View& view) const {
   return extent.in_front && within(extent.low_x, extent.high_x, shown_.low_x, shown_.high_x) &&
          within(extent.low_y, extent.high_y, shown_.low_y, shown_.high_y) && at.x >= shown_.low_x * at.z &&
          at.x <= shown_.high_x * at.z && at.y >= shown_.low_y * at.z && at.y <= shown_.high_y * at.z &&
-         at.z + view.near * extent.low_z >= wide_.near && at.z + view.far * extent.high_z <= wide_.far;
+         at.z + view.near * extent.low_z * (1.0 - kSkew) >= wide_.near &&
+         at.z + view.far * extent.high_z * (1.0 + kSkew) <= wide_.far;
 }
 
 }  // namespace sightline::culling

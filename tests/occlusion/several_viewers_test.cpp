@@ -358,7 +358,7 @@ bool blocks(const Triangle& triangle, const Vec3d& from, const Vec3d& to, double
   if (facing == 0.0 || (!triangle.double_sided && facing < 0.0)) {
     return false;
   }
-  // Of a triangle that is seen from its front, the volumes with the sides are all positive.
+  // The volumes with the sides are all positive where a triangle is seen from its front.
   const double side = facing > 0.0 ? 1.0 : -1.0;
   const double u = -side * dot(d, cross(b, c)), v = -side * dot(d, cross(c, a)),
                w = -side * dot(d, cross(a, b));
@@ -419,7 +419,8 @@ Vec3d viewerOf(ViewRandom& random, const View& view, const ViewerRegion& viewers
 }
 
 struct Counts {
-  // Of the pixels that are covered, summed over the cases, and over those in a space of their own.
+  // These are sums, over the cases, of the share of pixels that is covered. Cases in a space of their own are
+  // counted apart.
   double share = 0.0, moved_share = 0.0;
   std::size_t next_to_open = 0, segments = 0, failures = 0;
 };
