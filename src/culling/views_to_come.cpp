@@ -159,7 +159,7 @@ bool ViewsToCome::plan() {
   wide_ = view_;
   setOrientation(wide_, all.front().forward + all.back().forward, all.front().up + all.back().up);
   shown_ = extentOf(all.front());
-  for (const View& view : all) {
+  for (const View& view : all.subspan(1)) {
     shown_.join(extentOf(view));
   }
   if (!widen(kLeastTurn + kStrayTurn * turned * (views - 1))) {

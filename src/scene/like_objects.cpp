@@ -1,5 +1,6 @@
 #include "src/scene/like_objects.h"
 
+#include <bit>
 #include <cmath>
 
 #include "src/base/hash_slots.h"
@@ -15,16 +16,15 @@ Vec3f cornerOf(const SceneView& scene, const Object& object, std::uint32_t corne
 // A number that is the same for copies, but for those that rounding divides.
 std::uint64_t keyOf(const SceneView& scene, const Object& object) {
   std::uint64_t key = object.index_count;
-  const auto add = [&key](double number) {
-    key = base::mixBits(key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(number)));
-  };
+  const auto add = [&key](double number) { key = base::mixBits(key ^ std::bit_cast<std::uint64_t>(number)); };
   const Vec3f extent = object.bounds.extent();
   for (int axis = 0; axis < 3; ++axis) {
     int exponent = 0;
     add(std::floor(64.0 * std::frexp(extent[axis], &exponent)));
     add(exponent);
   }
-  // So coarse that rounding hardly ever makes a difference, and not at the sides of the box, where it would.
+  // Places are so coarse that rounding hardly ever makes a difference, and shifted so that it makes none at
+  // the sides of the box, where many corners lie.
   constexpr double kPlaces = 32.0, kShift = 0.3;
   for (const std::uint32_t corner : {0u, object.index_count / 2}) {
     const Vec3f at = cornerOf(scene, object, corner) * (1.0f / maxComponent(extent));

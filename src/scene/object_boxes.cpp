@@ -115,7 +115,7 @@ class Divider {
   std::uint32_t appendCuts(std::uint32_t n, std::uint32_t count, Cuts& cuts) const;
   // Appends the boxes around the parts of all triangles.
   void appendBoxes(const Cuts& cuts, std::vector<Box>& out);
-  // The same of those listed from `begin` on, in a box that is divided by a cut and others below it.
+  // Does so for those listed from `begin` on, in a box that is divided by a cut and others below it.
   void append(const Cuts& cuts, std::uint32_t cut, const Box& box, std::size_t begin, std::vector<Box>& out);
 
   std::uint32_t max_boxes_;

@@ -6,8 +6,8 @@
 
 namespace sightline::culling {
 
-// Draws the occluders into a depth buffer. Returns how many of the buffer's occluders are of the
-// scene's own set: those that move have ids of their own.
+// Draws the occluders into a depth buffer. Returns how many of the buffer's occluders are of the scene's own
+// set: those that move have ids of their own.
 template <typename Buffer>
 std::size_t drawOccluders(Buffer& buffer, std::span<const ChosenOccluders> sets,
                           const ParallelFor& parallel_for) {
