@@ -152,14 +152,11 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
   SurfaceSet set;
   occluders::SurfaceMesh mesh = occluders::weld(scene, parallel_for);
-  if (settings.join_edges) {
-    occluders::divideEdges(mesh, parallel_for);
-  }
+  occluders::connect(mesh, settings.join_edges, parallel_for);
   occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
   listByObject(mesh, gathered.part_of, scene.objects.size(), parallel_for, set);
   base::freeVector(gathered.part_of);
-  occluders::findChains(mesh, gathered.cluster_of, parallel_for, set);
-  base::freeVector(gathered.cluster_of);
+  occluders::findChains(mesh, gathered, parallel_for, set);
   set.vertices = std::move(mesh.vertices);
   LargeVector<std::uint32_t> part_of(set.clusters.size()), patch_of(set.clusters.size());
   base::forEach(parallel_for, set.parts.size(), [&](std::uint32_t part) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "src/base/parallel_rows.h"
@@ -16,7 +17,7 @@ namespace {
 
 using geometry::Lattice;
 
-constexpr std::size_t kEdgesOfPart = 32768, kClustersOfPart = 2048;
+constexpr std::size_t kPatchesOfPart = 2048;
 
 // An edge at which clusters end, in the direction in which the first of its uses has a positive value.
 struct BoundaryEdge {
@@ -24,102 +25,85 @@ struct BoundaryEdge {
   std::uint32_t first_use, use_count;
 };
 
-// Boundary edges with their uses, ascending by cluster.
-struct BoundaryEdges {
-  LargeVector<BoundaryEdge> edges;
-  LargeVector<ChainUse> uses;
-};
-
-// Those of a part of the mesh. Their uses count from the first one here.
-struct FoundEdges {
-  std::vector<BoundaryEdge> edges;
-  std::vector<ChainUse> uses;
-};
-struct KeptEdges {
-  std::span<BoundaryEdge> edges;
-  std::span<const ChainUse> uses;
-};
-
-// Sums up, edge by edge, how the triangles of each cluster run.
-class EdgeCollector {
+// The edges at which one cluster ends, and is the first that does. A use is how the triangles of a cluster
+// run along an edge, all in all; uses are ascending by cluster.
+class ClusterBoundary {
  public:
-  EdgeCollector(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, FoundEdges& found)
-      : mesh_(mesh), cluster_of_(cluster_of), found_(found) {}
+  ClusterBoundary(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of)
+      : mesh_(mesh), cluster_of_(cluster_of) {}
 
-  void add(std::span<const Side> sides) {
-    if (sides.size() == 2 && sides[0].value() != sides[1].value() &&
-        cluster_of_[sides[0].triangle()] == cluster_of_[sides[1].triangle()]) {
-      return;  // most edges lie within one cluster, where both sides cancel
+  // triangles: all of one cluster.
+  void find(std::uint32_t cluster, std::span<const std::uint32_t> triangles) {
+    edges_.clear();
+    uses_.clear();
+    for (const std::uint32_t t : triangles) {
+      for (Corner corner = 3 * t; corner < 3 * t + 3; ++corner) {
+        const std::uint32_t beyond = mesh_.beyond[corner];
+        if (beyond == SurfaceMesh::kNone) {
+          uses_.push_back({cluster, 1});
+          addEdge(corner, 1);
+        } else if (beyond >= SurfaceMesh::kCrowded) {
+          addCrowded(cluster, corner, mesh_.crowded[beyond - SurfaceMesh::kCrowded]);
+        } else if (const std::uint32_t other = cluster_of_[beyond / 3]; other > cluster) {
+          uses_.push_back({cluster, 1});
+          uses_.push_back({other, -1});
+          addEdge(corner, 2);
+        }
+      }
+    }
+  }
+
+  std::span<BoundaryEdge> edges() { return edges_; }
+  std::span<const ChainUse> uses() const { return uses_; }
+
+ private:
+  // Adds the edge from a corner on, of which the last uses are.
+  void addEdge(Corner corner, std::uint32_t use_count) {
+    const std::array<std::uint32_t, 3>& triangle = mesh_.triangles[corner / 3];
+    const std::uint32_t k = corner % 3;
+    edges_.push_back({triangle[k], triangle[k == 2 ? 0 : k + 1],
+                      static_cast<std::uint32_t>(uses_.size()) - use_count, use_count});
+  }
+
+  // Sums up how the triangles of each cluster run. An edge is added where its first side of the cluster is.
+  void addCrowded(std::uint32_t cluster, Corner corner, std::span<const Side> sides) {
+    const auto own = std::find_if(sides.begin(), sides.end(),
+                                  [&](Side side) { return cluster_of_[side.triangle()] == cluster; });
+    if (own->corner() != corner) {
+      return;
     }
     sums_.clear();
     for (const Side side : sides) {
-      const std::uint32_t cluster = cluster_of_[side.triangle()];
-      auto at = std::find_if(sums_.begin(), sums_.end(),
-                             [&](const ChainUse& use) { return use.cluster == cluster; });
+      const std::uint32_t other = cluster_of_[side.triangle()];
+      auto at =
+          std::find_if(sums_.begin(), sums_.end(), [&](const ChainUse& use) { return use.cluster == other; });
       if (at == sums_.end()) {
-        at = sums_.insert(sums_.end(), {cluster, 0});
+        at = sums_.insert(sums_.end(), {other, 0});
       }
-      at->value += side.value();
+      at->value += side.value() * own->value();
     }
     std::erase_if(sums_, [](const ChainUse& use) { return use.value == 0; });
-    if (sums_.empty()) {
-      return;
-    }
     std::sort(sums_.begin(), sums_.end(),
               [](const ChainUse& a, const ChainUse& b) { return a.cluster < b.cluster; });
-    const auto [low, high] = mesh_.endsOf(sides[0]);
-    BoundaryEdge edge{low, high, static_cast<std::uint32_t>(found_.uses.size()),
-                      static_cast<std::uint32_t>(sums_.size())};
-    if (sums_[0].value < 0) {
-      std::swap(edge.from, edge.to);
-      for (ChainUse& use : sums_) {
-        use.value = -use.value;
-      }
+    if (sums_.empty() || sums_[0].cluster != cluster) {
+      return;
     }
-    found_.uses.insert(found_.uses.end(), sums_.begin(), sums_.end());
-    found_.edges.push_back(edge);
+    uses_.insert(uses_.end(), sums_.begin(), sums_.end());
+    addEdge(corner, static_cast<std::uint32_t>(sums_.size()));
+    // So far the values count in the direction of the corner.
+    if (sums_[0].value < 0) {
+      std::swap(edges_.back().from, edges_.back().to);
+      std::for_each(uses_.end() - edges_.back().use_count, uses_.end(),
+                    [](ChainUse& use) { use.value = -use.value; });
+    }
   }
 
- private:
   const SurfaceMesh& mesh_;
   std::span<const std::uint32_t> cluster_of_;
-  FoundEdges& found_;
+  std::vector<BoundaryEdge> edges_;
+  std::vector<ChainUse> uses_;
   std::vector<ChainUse> sums_;
 };
-
-BoundaryEdges collectEdges(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
-                           const ParallelFor& parallel_for) {
-  const base::Parts parts(mesh.sides.count(), kEdgesOfPart);
-  base::PartStore store;
-  std::vector<KeptEdges> of_part(parts.count());
-  parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
-    FoundEdges found;
-    EdgeCollector collector(mesh, cluster_of, found);
-    for (std::uint32_t part = first; part < last; ++part) {
-      found.edges.clear();
-      found.uses.clear();
-      for (std::size_t edge = parts.begin(part); edge < parts.end(part); ++edge) {
-        collector.add(mesh.sides[edge]);
-      }
-      of_part[part] = {store.keep(found.edges), store.keep(found.uses)};
-    }
-  });
-  std::vector<std::uint32_t> first_edge(1, 0), first_use(1, 0);
-  for (const KeptEdges& part : of_part) {
-    first_edge.push_back(first_edge.back() + static_cast<std::uint32_t>(part.edges.size()));
-    first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
-  }
-  BoundaryEdges all{base::unsetVector<BoundaryEdge>(first_edge.back()),
-                    base::unsetVector<ChainUse>(first_use.back())};
-  base::forEach(parallel_for, of_part.size(), [&](std::uint32_t part) {
-    for (BoundaryEdge& edge : of_part[part].edges) {
-      edge.first_use += first_use[part];
-    }
-    std::copy(of_part[part].edges.begin(), of_part[part].edges.end(), all.edges.begin() + first_edge[part]);
-    std::copy(of_part[part].uses.begin(), of_part[part].uses.end(), all.uses.begin() + first_use[part]);
-  });
-  return all;
-}
 
 // Chains, with numbers that count from the first vertex and use here.
 struct Chains {
@@ -134,9 +118,9 @@ struct Chains {
   }
 };
 struct KeptChains {
-  std::span<SurfaceChain> chains;
-  std::span<const ChainUse> uses;
-  std::span<const Vec3f> vertices;
+  base::KeptItems<SurfaceChain> chains;
+  base::KeptItems<ChainUse> uses;
+  base::KeptItems<Vec3f> vertices;
 };
 
 // Whether p lies exactly on the edge from a to b, between its ends.
@@ -162,11 +146,11 @@ bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
 // Joins the edges of one cluster after the other.
 class ChainMaker {
  public:
-  ChainMaker(std::span<const ChainUse> uses, std::span<const Vec3f> vertices, Chains& made)
-      : uses_(uses), vertices_(vertices), made_(made) {}
+  ChainMaker(std::span<const Vec3f> vertices, Chains& made) : vertices_(vertices), made_(made) {}
 
-  // edges: those of which the cluster is the first one that ends there. Sorts them.
-  void add(std::span<BoundaryEdge> edges) {
+  // edges: those of which the cluster is the first one that ends there, with their uses. Sorts them.
+  void add(std::span<BoundaryEdge> edges, std::span<const ChainUse> uses) {
+    uses_ = uses;
     std::sort(edges.begin(), edges.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
       const int order = compareUses(a, b);
       return order != 0 ? order < 0 : std::tie(a.from, a.to) < std::tie(b.from, b.to);
@@ -253,28 +237,45 @@ class ChainMaker {
   std::vector<std::uint32_t> ends_;
 };
 
-// Puts the chains of all parts one after the other.
-void putTogether(std::span<const KeptChains> parts, const ParallelFor& parallel_for, SurfaceSet& set) {
+// Puts the chains of all parts one after the other, and lets go of them.
+void putTogether(std::span<KeptChains> parts, const ParallelFor& parallel_for, SurfaceSet& set) {
   std::vector<std::size_t> first_chain(1, 0);
   std::vector<std::uint32_t> first_use(1, 0), first_vertex(1, 0);
   for (const KeptChains& part : parts) {
-    first_chain.push_back(first_chain.back() + part.chains.size());
-    first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
-    first_vertex.push_back(first_vertex.back() + static_cast<std::uint32_t>(part.vertices.size()));
+    first_chain.push_back(first_chain.back() + part.chains.items.size());
+    first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.items.size()));
+    first_vertex.push_back(first_vertex.back() + static_cast<std::uint32_t>(part.vertices.items.size()));
   }
   set.chains = base::unsetVector<SurfaceChain>(first_chain.back());
   set.uses = base::unsetVector<ChainUse>(first_use.back());
   set.chain_vertices = base::unsetVector<Vec3f>(first_vertex.back());
   base::forEach(parallel_for, parts.size(), [&](std::uint32_t number) {
-    const KeptChains& part = parts[number];
-    for (SurfaceChain& chain : part.chains) {
-      chain.first_use += first_use[number];
-      chain.first_vertex += first_vertex[number];
+    const KeptChains part = std::exchange(parts[number], {});
+    std::transform(part.chains.items.begin(), part.chains.items.end(),
+                   set.chains.begin() + static_cast<std::ptrdiff_t>(first_chain[number]),
+                   [&](SurfaceChain chain) {
+                     chain.first_use += first_use[number];
+                     chain.first_vertex += first_vertex[number];
+                     return chain;
+                   });
+    std::copy(part.uses.items.begin(), part.uses.items.end(), set.uses.begin() + first_use[number]);
+    std::copy(part.vertices.items.begin(), part.vertices.items.end(),
+              set.chain_vertices.begin() + first_vertex[number]);
+  });
+}
+
+// Lists the triangles of a patch by cluster.
+void groupTriangles(const SurfaceSet& set, const SurfacePatch& patch, const Gathered& gathered,
+                    base::Rows<std::uint32_t>& by_cluster) {
+  const SurfaceCluster &first = set.clusters[patch.first_cluster],
+                       &last = set.clusters[patch.first_cluster + patch.cluster_count - 1];
+  const std::span<const std::uint32_t> triangles =
+      std::span(gathered.by_patch)
+          .subspan(first.first_triangle, last.first_triangle + last.triangle_count - first.first_triangle);
+  by_cluster.group(patch.cluster_count, [&](auto&& pair) {
+    for (const std::uint32_t t : triangles) {
+      pair(gathered.cluster_of[t] - patch.first_cluster, t);
     }
-    std::copy(part.chains.begin(), part.chains.end(),
-              set.chains.begin() + static_cast<std::ptrdiff_t>(first_chain[number]));
-    std::copy(part.uses.begin(), part.uses.end(), set.uses.begin() + first_use[number]);
-    std::copy(part.vertices.begin(), part.vertices.end(), set.chain_vertices.begin() + first_vertex[number]);
   });
 }
 
@@ -296,34 +297,31 @@ void listByCluster(const ParallelFor& parallel_for, SurfaceSet& set) {
 
 }  // namespace
 
-void findChains(SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, const ParallelFor& parallel_for,
-                SurfaceSet& set) {
-  BoundaryEdges boundary = collectEdges(mesh, cluster_of, parallel_for);
-  mesh.forgetTriangles();
-  base::Rows<BoundaryEdge> by_cluster;  // by their first cluster
-  base::groupIntoRows(parallel_for, set.clusters.size(), boundary.edges.size(), by_cluster.first(),
-                      by_cluster.all(), [&](std::size_t begin, std::size_t end, auto&& pair) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                          pair(boundary.uses[boundary.edges[i].first_use].cluster, boundary.edges[i]);
-                        }
-                      });
-  base::freeVector(boundary.edges);
-  const base::Parts parts(set.clusters.size(), kClustersOfPart);
-  base::PartStore store;
+void findChains(SurfaceMesh& mesh, Gathered& gathered, const ParallelFor& parallel_for, SurfaceSet& set) {
+  const base::Parts parts(set.patches.size(), kPatchesOfPart);
   std::vector<KeptChains> of_part(parts.count());
-  parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
-    Chains made;
-    ChainMaker maker(boundary.uses, mesh.vertices, made);
-    for (std::uint32_t part = first; part < last; ++part) {
-      made.clear();
-      for (std::size_t cluster = parts.begin(part); cluster < parts.end(part); ++cluster) {
-        maker.add(by_cluster[cluster]);
+  {
+    base::PartStore store;
+    parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
+      Chains made;
+      ClusterBoundary boundary(mesh, gathered.cluster_of);
+      ChainMaker maker(mesh.vertices, made);
+      base::Rows<std::uint32_t> by_cluster;
+      for (std::uint32_t part = first; part < last; ++part) {
+        made.clear();
+        for (std::size_t patch = parts.begin(part); patch < parts.end(part); ++patch) {
+          groupTriangles(set, set.patches[patch], gathered, by_cluster);
+          for (std::uint32_t i = 0; i < by_cluster.count(); ++i) {
+            boundary.find(set.patches[patch].first_cluster + i, by_cluster[i]);
+            maker.add(boundary.edges(), boundary.uses());
+          }
+        }
+        of_part[part] = {store.keep(made.chains), store.keep(made.uses), store.keep(made.vertices)};
       }
-      of_part[part] = {store.keep(made.chains), store.keep(made.uses), store.keep(made.vertices)};
-    }
-  });
-  by_cluster = {};
-  boundary = {};
+    });
+  }
+  mesh.forgetTriangles();
+  gathered = {};
   putTogether(of_part, parallel_for, set);
   listByCluster(parallel_for, set);
 }

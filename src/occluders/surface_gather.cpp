@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "src/base/parts.h"
@@ -329,7 +330,7 @@ Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const Surfac
   // Their memory is of use to what follows.
   base::freeVector(normals);
   base::freeVector(parts.place_of);
-  mesh.forgetNeighbours();
+  mesh.forgetJunctions();
 
   // Where each chunk begins, and one more.
   std::vector<Place> places(1);
@@ -358,6 +359,7 @@ Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const Surfac
   for (const Box& bounds : set.part_bounds) {
     set.bounds.extend(bounds);
   }
+  gathered.by_patch = std::move(parts.triangles);
   return gathered;
 }
 

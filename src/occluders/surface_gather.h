@@ -15,6 +15,7 @@ namespace sightline::occluders {
 struct Gathered {
   // By triangle of the mesh: numbers in SurfaceSet::parts and SurfaceSet::clusters.
   LargeVector<std::uint32_t> part_of, cluster_of;
+  LargeVector<std::uint32_t> by_patch;  // triangles of the mesh, sorted by patch
 };
 
 // Fills the parts, patches, clusters and triangles of a set, but for chains and edge counts. Frees what the

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "src/base/parallel_rows.h"
+#include "src/base/part_store.h"
 #include "src/occluders/bend_triangles.h"
 #include "src/occluders/edge_vertices.h"
 #include "src/occluders/weld_vertices.h"
@@ -15,147 +15,222 @@ namespace sightline::occluders {
 
 namespace {
 
-constexpr std::size_t kVerticesOfPart = 16384, kOpenEdgesOfPart = 32768;
+constexpr std::size_t kVerticesOfPart = 16384;
 
-// A side before edges have numbers.
+// A side in the row of its edge's lower vertex.
 struct LooseSide {
   std::uint32_t high = 0;  // the edge's higher vertex
   Side side;
+
+  // By edge, then ascending.
+  friend bool operator<(const LooseSide& a, const LooseSide& b) { return a.key() < b.key(); }
+
+ private:
+  std::uint64_t key() const { return std::uint64_t{high} << 32 | side.code; }
 };
 
-// What lies beyond the sides of an edge: see SurfaceMesh::beyond.
-void setBeyond(std::span<const Side> sides, std::uint32_t edge, LargeVector<std::uint32_t>& beyond) {
-  if (sides.size() == 1) {
-    beyond[sides[0].corner()] = SurfaceMesh::kNone;
-  } else if (sides.size() == 2 && sides[0].value() != sides[1].value()) {
-    beyond[sides[0].corner()] = sides[1].corner();
-    beyond[sides[1].corner()] = sides[0].corner();
-  } else {
-    for (const Side side : sides) {
-      beyond[side.corner()] = SurfaceMesh::kOther + edge;
-    }
-  }
-}
-
-// Numbers the edges, and finds the triangles beside them.
-void connect(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+// Lists the sides of some triangles by their lower vertices, sorted. numberOf(i): the number of triangle i of
+// `count` in the mesh.
+template <typename NumberOf>
+base::Rows<LooseSide> sidesByVertex(const SurfaceMesh& mesh, std::size_t count, const NumberOf& numberOf,
+                                    const ParallelFor& parallel_for) {
   base::Rows<LooseSide> by_low;
-  base::groupIntoRows(parallel_for, mesh.vertices.size(), mesh.triangleCount(), by_low.first(), by_low.all(),
+  base::groupIntoRows(parallel_for, mesh.vertices.size(), count, by_low.first(), by_low.all(),
                       [&](std::size_t begin, std::size_t end, auto&& pair) {
-                        for (std::size_t t = begin; t < end; ++t) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          const std::uint32_t t = numberOf(i);
                           for (std::uint32_t k = 0; k < 3; ++k) {
                             const std::uint32_t a = mesh.triangles[t][k],
                                                 b = mesh.triangles[t][k == 2 ? 0 : k + 1];
-                            const auto code = static_cast<std::uint32_t>(2 * (3 * t + k));
+                            const std::uint32_t code = 2 * (3 * t + k);
                             pair(std::min(a, b), LooseSide{std::max(a, b), {code + (a < b ? 0 : 1)}});
                           }
                         }
                       });
-  const base::Parts parts(mesh.vertices.size(), kVerticesOfPart);
-  std::vector<std::uint32_t> first_edge(parts.count() + 1, 0);
-  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    std::uint32_t edges = 0;
-    for (std::size_t low = begin; low < end; ++low) {
-      const std::span<LooseSide> sides = by_low[low];
-      std::sort(sides.begin(), sides.end(), [](const LooseSide& a, const LooseSide& b) {
-        return std::tie(a.high, a.side.code) < std::tie(b.high, b.side.code);
-      });
-      for (std::size_t i = 0; i < sides.size(); ++i) {
-        edges += i == 0 || sides[i].high != sides[i - 1].high ? 1 : 0;
-      }
-    }
-    first_edge[part + 1] = edges;
-  });
-  std::partial_sum(first_edge.begin(), first_edge.end(), first_edge.begin());
-
-  // Sides stay where they are: rows of edges divide those of vertices.
-  LargeVector<Side>& sides = mesh.sides.all();
-  LargeVector<std::uint32_t>& first = mesh.sides.first();
-  sides = base::unsetVector<Side>(by_low.items().size());
-  first = base::unsetVector<std::uint32_t>(std::size_t{first_edge.back()} + 1);
-  first.back() = static_cast<std::uint32_t>(sides.size());
-  mesh.beyond = base::unsetVector<std::uint32_t>(sides.size());
-  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    std::uint32_t edge = first_edge[part];
-    for (std::size_t low = begin; low < end; ++low) {
-      const std::span<const LooseSide> loose = by_low[low];
-      const auto offset = static_cast<std::size_t>(loose.data() - by_low.items().data());
-      for (std::size_t i = 0, next = 0; i < loose.size(); i = next) {
-        for (; next < loose.size() && loose[next].high == loose[i].high; ++next) {
-          sides[offset + next] = loose[next].side;
+  base::Parts(by_low.count(), kVerticesOfPart)
+      .run(parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t low = begin; low < end; ++low) {
+          std::sort(by_low[low].begin(), by_low[low].end());
         }
-        first[edge] = static_cast<std::uint32_t>(offset + i);
-        setBeyond(std::span(sides).subspan(offset + i, next - i), edge, mesh.beyond);
-        ++edge;
-      }
-    }
-  });
+      });
+  return by_low;
 }
 
-// Edges at which triangles do not cancel.
-struct OpenEdges {
-  std::vector<std::uint32_t> numbers;  // ascending
-  std::vector<MeshEdge> edges;         // ascending
-};
+// Calls visit(sides) for each edge of a row.
+template <typename Visit>
+void forEachEdge(std::span<const LooseSide> row, const Visit& visit) {
+  for (std::size_t i = 0, next = 0; i < row.size(); i = next) {
+    while (next < row.size() && row[next].high == row[i].high) {
+      ++next;
+    }
+    visit(row.subspan(i, next - i));
+  }
+}
 
-OpenEdges openMeshEdges(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const base::Parts parts(mesh.sides.count(), kOpenEdgesOfPart);
-  std::vector<OpenEdges> of_part(parts.count());
-  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    for (std::size_t edge = begin; edge < end; ++edge) {
-      const std::span<const Side> sides = mesh.sides[edge];
-      std::int32_t sum = 0;
-      for (const Side side : sides) {
-        sum += side.value();
+// Edges at which triangles do not cancel, ascending.
+LargeVector<MeshEdge> openEdges(const base::Rows<LooseSide>& sides, const ParallelFor& parallel_for) {
+  const base::Parts parts(sides.count(), kVerticesOfPart);
+  base::PartStore store;
+  std::vector<base::KeptItems<MeshEdge>> of_part(parts.count());
+  parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
+    std::vector<MeshEdge> open;
+    for (std::uint32_t part = first; part < last; ++part) {
+      open.clear();
+      for (std::size_t low = parts.begin(part); low < parts.end(part); ++low) {
+        forEachEdge(sides[low], [&](std::span<const LooseSide> of_edge) {
+          std::int32_t sum = 0;
+          for (const LooseSide& side : of_edge) {
+            sum += side.side.value();
+          }
+          if (sum != 0) {
+            open.push_back({static_cast<std::uint32_t>(low), of_edge[0].high});
+          }
+        });
       }
-      if (sum != 0) {
-        const auto [low, high] = mesh.endsOf(sides[0]);
-        of_part[part].numbers.push_back(static_cast<std::uint32_t>(edge));
-        of_part[part].edges.push_back({low, high});
-      }
+      of_part[part] = store.keep(open);
     }
   });
-  OpenEdges open;
-  for (const OpenEdges& part : of_part) {
-    open.numbers.insert(open.numbers.end(), part.numbers.begin(), part.numbers.end());
-    open.edges.insert(open.edges.end(), part.edges.begin(), part.edges.end());
+  LargeVector<MeshEdge> all;
+  all.reserve(std::accumulate(of_part.begin(), of_part.end(), std::size_t{0},
+                              [](std::size_t sum, const auto& part) { return sum + part.items.size(); }));
+  for (const base::KeptItems<MeshEdge>& part : of_part) {
+    all.insert(all.end(), part.items.begin(), part.items.end());
   }
-  return open;
+  return all;
 }
 
 // The pieces of triangles whose edges have vertices on them.
-struct DividedTriangles {
-  std::vector<std::uint32_t> numbers;  // of the triangles, ascending
-  BentTriangles pieces;                // the source is a place in `numbers`
+struct Pieces {
+  std::vector<std::uint32_t> divided;  // triangles of the mesh, ascending
+  BentTriangles triangles;             // the source is a place in `divided`
 };
 
-DividedTriangles divideTriangles(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const OpenEdges open = openMeshEdges(mesh, parallel_for);
-  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(mesh.vertices, open.edges, parallel_for);
-  DividedTriangles divided;
+Pieces piecesOf(const SurfaceMesh& mesh, const base::Rows<LooseSide>& sides,
+                const ParallelFor& parallel_for) {
+  const LargeVector<MeshEdge> open = openEdges(sides, parallel_for);
+  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(mesh.vertices, open, parallel_for);
+  Pieces pieces;
   std::vector<MeshEdge> edges;
   base::Rows<std::uint32_t> through;
-  for (std::size_t i = 0; i < open.edges.size(); ++i) {
+  for (std::size_t i = 0; i < open.size(); ++i) {
     if (on_edges[i].empty()) {
       continue;
     }
-    edges.push_back(open.edges[i]);
+    edges.push_back(open[i]);
     for (const std::uint32_t vertex : on_edges[i]) {
       through.add(vertex);
     }
     through.endRow();
-    for (const Side side : mesh.sides[open.numbers[i]]) {
-      divided.numbers.push_back(side.triangle());
+    for (const LooseSide& side : sides[open[i].low]) {
+      if (side.high == open[i].high) {
+        pieces.divided.push_back(side.side.triangle());
+      }
     }
   }
-  std::sort(divided.numbers.begin(), divided.numbers.end());
-  divided.numbers.erase(std::unique(divided.numbers.begin(), divided.numbers.end()), divided.numbers.end());
-  TriangleBender bender(edges, through, divided.pieces);
-  for (std::uint32_t place = 0; place < divided.numbers.size(); ++place) {
-    const std::array<std::uint32_t, 3>& corners = mesh.triangles[divided.numbers[place]];
+  std::sort(pieces.divided.begin(), pieces.divided.end());
+  pieces.divided.erase(std::unique(pieces.divided.begin(), pieces.divided.end()), pieces.divided.end());
+  TriangleBender bender(edges, through, pieces.triangles);
+  for (std::uint32_t place = 0; place < pieces.divided.size(); ++place) {
+    const std::array<std::uint32_t, 3>& corners = mesh.triangles[pieces.divided[place]];
     bender.add({corners[0], corners[1], corners[2]}, place);
   }
-  return divided;
+  return pieces;
+}
+
+// What numbers triangles have after some of them were divided.
+struct Renumbering {
+  static constexpr std::uint32_t kDivided = 0xffffffffu;
+  LargeVector<std::uint32_t> number_of;  // by given triangle, ascending but for kDivided
+  std::vector<std::uint32_t> pieces;     // the numbers of pieces, ascending
+};
+
+// Puts pieces in the place of their triangles. A triangle all of whose pieces have collapsed stays.
+Renumbering replaceDivided(SurfaceMesh& mesh, const Pieces& pieces) {
+  const BentTriangles& made = pieces.triangles;
+  Renumbering numbers{base::unsetVector<std::uint32_t>(mesh.triangleCount()), {}};
+  numbers.pieces.reserve(made.source.size());
+  std::size_t replaced = 0;
+  for (std::size_t piece = 0; piece < made.source.size(); ++piece) {
+    replaced += piece == 0 || made.source[piece] != made.source[piece - 1] ? 1 : 0;
+  }
+  const std::size_t count = mesh.triangleCount() - replaced + made.source.size();
+  LargeVector<std::array<std::uint32_t, 3>> triangles =
+      base::unsetVector<std::array<std::uint32_t, 3>>(count);
+  LargeVector<std::uint32_t> objects = base::unsetVector<std::uint32_t>(count);
+  mesh.source = base::unsetVector<std::uint32_t>(count);
+  std::uint32_t number = 0;
+  std::size_t piece = 0;
+  const auto add = [&](const std::array<std::uint32_t, 3>& corners, std::uint32_t given) {
+    triangles[number] = corners;
+    objects[number] = mesh.objects[given];
+    mesh.source[number++] = given;
+  };
+  for (std::uint32_t given = 0; given < mesh.triangleCount(); ++given) {
+    if (piece == made.source.size() || pieces.divided[made.source[piece]] != given) {
+      numbers.number_of[given] = number;
+      add(mesh.triangles[given], given);
+      continue;
+    }
+    numbers.number_of[given] = Renumbering::kDivided;
+    for (; piece < made.source.size() && pieces.divided[made.source[piece]] == given; ++piece) {
+      const std::uint32_t* const corners = &made.triangles[3 * piece];
+      numbers.pieces.push_back(number);
+      add({corners[0], corners[1], corners[2]}, given);
+    }
+  }
+  mesh.given = std::exchange(mesh.triangles, std::move(triangles));
+  mesh.objects = std::move(objects);
+  return numbers;
+}
+
+// Takes the sides of divided triangles out of a row, and gives the others their new numbers. Returns what is
+// left of it.
+std::span<LooseSide> renumbered(const Renumbering& numbers, std::span<LooseSide> row) {
+  std::size_t kept = 0;
+  for (const LooseSide& side : row) {
+    const std::uint32_t number = numbers.number_of[side.side.triangle()];
+    if (number != Renumbering::kDivided) {
+      row[kept++] = {side.high, {6 * number + side.side.code % 6}};
+    }
+  }
+  return row.first(kept);
+}
+
+// Fills SurfaceMesh::beyond and SurfaceMesh::crowded. row_of(low, scratch): all sides at the edges of a lower
+// vertex, sorted.
+template <typename RowOf>
+void findBeyond(SurfaceMesh& mesh, const RowOf& row_of, const ParallelFor& parallel_for) {
+  mesh.beyond = base::unsetVector<std::uint32_t>(3 * mesh.triangleCount());
+  const base::Parts parts(mesh.vertices.size(), kVerticesOfPart);
+  std::vector<base::Rows<Side>> crowded(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    std::vector<LooseSide> scratch;
+    for (std::size_t low = begin; low < end; ++low) {
+      forEachEdge(row_of(low, scratch), [&](std::span<const LooseSide> sides) {
+        const Side first = sides.front().side, last = sides.back().side;
+        if (sides.size() == 1) {
+          mesh.beyond[first.corner()] = SurfaceMesh::kNone;
+        } else if (sides.size() == 2 && first.value() != last.value()) {
+          mesh.beyond[first.corner()] = last.corner();
+          mesh.beyond[last.corner()] = first.corner();
+        } else {
+          for (const LooseSide& side : sides) {
+            crowded[part].add(side.side);
+          }
+          crowded[part].endRow();
+        }
+      });
+    }
+  });
+  for (const base::Rows<Side>& of_part : crowded) {
+    for (std::size_t edge = 0; edge < of_part.count(); ++edge) {
+      for (const Side side : of_part[edge]) {
+        mesh.beyond[side.corner()] = SurfaceMesh::kCrowded + static_cast<std::uint32_t>(mesh.crowded.count());
+        mesh.crowded.add(side);
+      }
+      mesh.crowded.endRow();
+    }
+  }
 }
 
 }  // namespace
@@ -219,39 +294,34 @@ SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for) {
     });
   });
   mesh.vertices = std::move(welded.vertices);
-  connect(mesh, parallel_for);
   return mesh;
 }
 
-void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const DividedTriangles divided = divideTriangles(mesh, parallel_for);
-  if (divided.numbers.empty()) {
+void connect(SurfaceMesh& mesh, bool divide_edges, const ParallelFor& parallel_for) {
+  base::Rows<LooseSide> sides = sidesByVertex(
+      mesh, mesh.triangleCount(), [](std::size_t i) { return static_cast<std::uint32_t>(i); }, parallel_for);
+  Pieces pieces = divide_edges ? piecesOf(mesh, sides, parallel_for) : Pieces{};
+  if (pieces.triangles.source.empty()) {
+    findBeyond(
+        mesh, [&](std::size_t low, std::vector<LooseSide>&) { return sides[low]; }, parallel_for);
     return;
   }
-  const BentTriangles& made = divided.pieces;
-  SurfaceMesh pieces;
-  pieces.triangles.reserve(mesh.triangles.size());
-  pieces.objects.reserve(mesh.triangles.size());
-  std::size_t next = 0, piece = 0;
-  for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
-    const std::size_t before = pieces.triangles.size();
-    if (next < divided.numbers.size() && divided.numbers[next] == t) {
-      for (; piece < made.source.size() && made.source[piece] == next; ++piece) {
-        const std::uint32_t* of = &made.triangles[3 * piece];
-        pieces.triangles.push_back({of[0], of[1], of[2]});
-      }
-      ++next;
-    }
-    if (pieces.triangles.size() == before) {
-      pieces.triangles.push_back(mesh.triangles[t]);
-    }
-    pieces.objects.resize(pieces.triangles.size(), mesh.objects[t]);
-    pieces.source.resize(pieces.triangles.size(), t);
-  }
-  pieces.vertices = std::move(mesh.vertices);
-  pieces.given = std::move(mesh.triangles);
-  mesh = std::move(pieces);
-  connect(mesh, parallel_for);
+  const Renumbering numbers = replaceDivided(mesh, pieces);
+  pieces = {};
+  base::Rows<LooseSide> of_pieces = sidesByVertex(
+      mesh, numbers.pieces.size(), [&](std::size_t i) { return numbers.pieces[i]; }, parallel_for);
+  findBeyond(
+      mesh,
+      [&](std::size_t low, std::vector<LooseSide>& scratch) {
+        const std::span<LooseSide> kept = renumbered(numbers, sides[low]), added = of_pieces[low];
+        if (added.empty() || kept.empty()) {
+          return kept.empty() ? added : kept;
+        }
+        scratch.resize(kept.size() + added.size());
+        std::merge(kept.begin(), kept.end(), added.begin(), added.end(), scratch.begin());
+        return std::span(scratch);
+      },
+      parallel_for);
 }
 
 }  // namespace sightline::occluders

@@ -35,14 +35,15 @@ struct SurfaceMesh {
   LargeVector<std::array<std::uint32_t, 3>> triangles;
   LargeVector<std::uint32_t> objects;  // by triangle
 
-  // Filled by connect(). Edges are numbered by their lower and then by their higher vertex.
-  base::Rows<Side> sides;  // by edge, ascending
+  // Filled by connect().
   // By corner: the corner at which one other triangle runs back along the edge. Where there is no other
-  // triangle: kNone; otherwise kOther and the number of the edge.
+  // triangle: kNone; otherwise kCrowded and the number of the edge in `crowded`.
   LargeVector<std::uint32_t> beyond;
-  static constexpr std::uint32_t kNone = 0xffffffffu, kOther = 0x80000000u;
+  static constexpr std::uint32_t kNone = 0xffffffffu, kCrowded = 0x80000000u;
+  // Edges with more than two triangles, or two that run the same way: all their sides, ascending.
+  base::Rows<Side> crowded;
 
-  // Filled by divideEdges(), and empty if nothing was divided: by triangle, which of the `given` ones it is a
+  // Filled by connect(), and empty if nothing was divided: by triangle, which of the `given` ones it is a
   // piece of; and these as they were.
   LargeVector<std::uint32_t> source;
   LargeVector<std::array<std::uint32_t, 3>> given;
@@ -55,9 +56,8 @@ struct SurfaceMesh {
     const std::uint32_t from = triangle[number], to = triangle[number == 2 ? 0 : number + 1];
     return side.value() > 0 ? std::array{from, to} : std::array{to, from};
   }
-  // Frees what only forEachBeyond() and meetAtJunction() read, which are not to be called afterwards.
-  void forgetNeighbours() {
-    base::freeVector(beyond);
+  // Frees what only meetAtJunction() reads, which is not to be called afterwards.
+  void forgetJunctions() {
     base::freeVector(source);
     base::freeVector(given);
   }
@@ -84,10 +84,10 @@ struct SurfaceMesh {
   template <typename Visit>
   void forEachBeyond(Corner corner, Visit&& visit) const {
     const std::uint32_t other = beyond[corner];
-    if (other < kOther) {
+    if (other < kCrowded) {
       visit(other / 3);
     } else if (other != kNone) {
-      for (const Side side : sides[other - kOther]) {
+      for (const Side side : crowded[other - kCrowded]) {
         visit(side.triangle());
       }
     }
@@ -108,11 +108,13 @@ struct OpaqueTriangles {
 };
 OpaqueTriangles opaqueTriangles(const SceneView& scene, const ParallelFor& parallel_for);
 
-// Leaves out triangles that are not finite, and those with two equal corners.
+// The vertices and triangles of a scene. Leaves out triangles that are not finite, and those with two equal
+// corners.
 SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for);
 
-// Divides edges at which triangles do not cancel where vertices of other such edges lie on them exactly, and
-// their triangles with them. No vertex is new.
-void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for);
+// Finds what lies beyond the edges of triangles. divide_edges: edges at which triangles do not cancel are
+// divided before where vertices of other such edges lie on them exactly, and their triangles with them. No
+// vertex is new.
+void connect(SurfaceMesh& mesh, bool divide_edges, const ParallelFor& parallel_for);
 
 }  // namespace sightline::occluders

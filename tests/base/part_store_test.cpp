@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <thread>
@@ -21,7 +22,7 @@ std::vector<std::uint64_t> numbers(std::size_t count, std::uint64_t first) {
 
 // Keeps lists of all sizes, and says whether all of them are still there at the end.
 bool keepsAll(PartStore& store, std::uint64_t seed) {
-  std::vector<std::span<const std::uint64_t>> kept;
+  std::vector<KeptItems<std::uint64_t>> kept;
   std::vector<std::vector<std::uint64_t>> given;
   for (std::size_t i = 0; i < 300; ++i) {
     given.push_back(numbers(i * i % 10007 * (i % 50 == 0 ? 30 : 1), seed + 1000000 * i));
@@ -30,8 +31,9 @@ bool keepsAll(PartStore& store, std::uint64_t seed) {
   }
   bool all = true;
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    all = all && std::vector(kept[i].begin(), kept[i].end()) == given[i] &&
-          reinterpret_cast<std::uintptr_t>(kept[i].data()) % alignof(std::uint64_t) == 0;
+    const std::span<std::uint64_t> items = kept[i].items;
+    all = all && std::vector(items.begin(), items.end()) == given[i] &&
+          reinterpret_cast<std::uintptr_t>(items.data()) % alignof(std::uint64_t) == 0;
   }
   return all;
 }
@@ -39,7 +41,7 @@ bool keepsAll(PartStore& store, std::uint64_t seed) {
 TEST(PartStore, KeepsWhatItIsGiven) {
   PartStore store;
   EXPECT_TRUE(keepsAll(store, 0));
-  EXPECT_TRUE(store.keep(std::vector<int>()).empty());
+  EXPECT_TRUE(store.keep(std::vector<int>()).items.empty());
 }
 
 TEST(PartStore, KeepsWhatSeveralThreadsGive) {
@@ -49,6 +51,22 @@ TEST(PartStore, KeepsWhatSeveralThreadsGive) {
   EXPECT_TRUE(keepsAll(store, 0));
   other.join();
   EXPECT_TRUE(other_kept);
+}
+
+TEST(PartStore, ItemsStayWithoutTheStoreAndAreFreedWithTheLastOnesBesideThem) {
+  KeptItems<std::uint64_t> first, second;
+  {
+    PartStore store;
+    first = store.keep(numbers(5, 100));
+    second = store.keep(numbers(3, 200));
+  }
+  const std::weak_ptr<const void> memory = first.memory;
+  EXPECT_EQ(std::vector(first.items.begin(), first.items.end()), numbers(5, 100));
+  first = {};
+  EXPECT_EQ(std::vector(second.items.begin(), second.items.end()), numbers(3, 200));
+  EXPECT_FALSE(memory.expired());
+  second = {};
+  EXPECT_TRUE(memory.expired());
 }
 
 TEST(UnsetVector, IsAVectorLikeAnyOther) {
