@@ -188,8 +188,26 @@ class ChainMaker {
     vertices.push_back(vertex);
   }
 
+  // Begins a chain with an edge, and with its uses.
+  SurfaceChain chainFrom(const BoundaryEdge& edge) {
+    SurfaceChain chain;
+    chain.first_vertex = static_cast<std::uint32_t>(made_.vertices.size());
+    chain.vertex_count = 2;
+    made_.vertices.push_back(vertices_[edge.from]);
+    made_.vertices.push_back(vertices_[edge.to]);
+    chain.first_use = static_cast<std::uint32_t>(made_.uses.size());
+    chain.use_count = edge.use_count;
+    const std::span<const ChainUse> uses = usesOf(edge);
+    made_.uses.insert(made_.uses.end(), uses.begin(), uses.end());
+    return chain;
+  }
+
   // Joins edges with the same uses, ascending by `from`, end to end.
   void joinEdges(std::span<const BoundaryEdge> edges) {
+    if (edges.size() == 1) {
+      made_.chains.push_back(chainFrom(edges[0]));  // as most of them are
+      return;
+    }
     taken_.assign(edges.size(), 0);
     const auto startingAt = [&](std::uint32_t vertex) {
       auto at = std::lower_bound(edges.begin(), edges.end(), vertex,
@@ -213,18 +231,13 @@ class ChainMaker {
         if (taken_[i] != 0 || (!loops && std::binary_search(ends_.begin(), ends_.end(), edges[i].from))) {
           continue;
         }
-        SurfaceChain chain;
-        chain.first_vertex = static_cast<std::uint32_t>(made_.vertices.size());
-        chain.first_use = static_cast<std::uint32_t>(made_.uses.size());
-        made_.vertices.push_back(vertices_[edges[i].from]);
-        for (std::size_t next = i; next < edges.size(); next = startingAt(edges[next].to)) {
+        SurfaceChain chain = chainFrom(edges[i]);
+        taken_[i] = 1;
+        for (std::size_t next = i; (next = startingAt(edges[next].to)) < edges.size();) {
           taken_[next] = 1;
           addVertex(vertices_[edges[next].to], chain.first_vertex);
         }
         chain.vertex_count = static_cast<std::uint32_t>(made_.vertices.size()) - chain.first_vertex;
-        const std::span<const ChainUse> uses = usesOf(edges[i]);
-        made_.uses.insert(made_.uses.end(), uses.begin(), uses.end());
-        chain.use_count = static_cast<std::uint32_t>(uses.size());
         made_.chains.push_back(chain);
       }
     }

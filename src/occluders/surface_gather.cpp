@@ -53,21 +53,10 @@ Vec3d unitNormal(std::span<const Vec3f> vertices, const std::uint32_t* corners) 
   return size > 0.0 ? normal / size : Vec3d{};
 }
 
-LargeVector<Vec3d> unitNormals(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  LargeVector<Vec3d> normals = base::unsetVector<Vec3d>(mesh.triangleCount());
-  base::forEach(parallel_for, normals.size(),
-                [&](std::uint32_t t) { normals[t] = unitNormal(mesh.vertices, mesh.triangles[t].data()); });
-  return normals;
-}
-
 // Gathers triangles of the same sidedness from a first one on over its edges, one part after the other. A
 // part that is half full grows no farther over T-junctions: what it reached there would be of many objects,
 // and the depth of a part is that of its farthest one.
-PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::span<const Vec3d> normals,
-                          std::uint32_t max_triangles) {
-  // Normals may be any. Those that are opposite but for rounding may have a cosine below this all the same:
-  // then they are not gathered together.
-  const double min_cosine = cosineOf(180.0);
+PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::uint32_t max_triangles) {
   // Until a triangle is gathered, its place says which sides it has.
   constexpr std::uint32_t kFree = 0xfffffffeu;
   const auto freeOf = [](bool double_sided) { return double_sided ? kFree : kFree + 1; };
@@ -85,8 +74,7 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
     const std::uint32_t most = end + max_triangles, half_full = end + max_triangles / 2;
     std::uint32_t from = seed;
     const auto take = [&](std::uint32_t t) {
-      if (end < most && parts.place_of[t] == free && isSimilar(normals[t], normals[seed], min_cosine) &&
-          (end < half_full || !mesh.meetAtJunction(from, t))) {
+      if (end < most && parts.place_of[t] == free && (end < half_full || !mesh.meetAtJunction(from, t))) {
         parts.place_of[t] = end;
         parts.triangles[end++] = t;
       }
@@ -117,10 +105,8 @@ struct Division {
 // order in which they were gathered.
 class PartDivider {
  public:
-  PartDivider(const SurfaceMesh& mesh, std::span<const Vec3d> normals, PartTriangles& parts,
-              const SurfaceSettings& settings)
+  PartDivider(const SurfaceMesh& mesh, PartTriangles& parts, const SurfaceSettings& settings)
       : mesh_(mesh),
-        normals_(normals),
         parts_(parts),
         patch_triangles_(clamped(settings.patch_triangles)),
         cluster_triangles_(clamped(settings.cluster_triangles)),
@@ -132,6 +118,7 @@ class PartDivider {
               std::span<std::uint32_t> cluster_of) {
     begin_part_ = parts_.first[part];
     size_ = parts_.first[part + 1] - begin_part_;
+    look();
     patch_of_.assign(size_, kUngathered);
     cluster_of_.assign(size_, kUngathered);
     by_patch_.clear();
@@ -170,60 +157,96 @@ class PartDivider {
   }
 
  private:
+  static constexpr std::uint32_t kSeveral = 0xfffffffeu;  // triangles may lie beyond an edge
+
   std::uint32_t triangleOf(std::uint32_t i) const { return parts_.triangles[begin_part_ + i]; }
+  // The number in the part; large for triangles of other parts.
+  std::uint32_t numberOf(std::uint32_t t) const { return parts_.place_of[t] - begin_part_; }
+
+  // Finds the normals of the part's triangles and their neighbours.
+  void look() {
+    normals_.resize(size_);
+    neighbours_.resize(std::size_t{3} * size_);
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      const std::uint32_t t = triangleOf(i);
+      normals_[i] = unitNormal(mesh_.vertices, mesh_.triangles[t].data());
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t beyond = mesh_.beyond[3 * t + k];
+        neighbours_[std::size_t{3} * i + k] = beyond < SurfaceMesh::kCrowded ? numberOf(beyond / 3)
+                                              : beyond == SurfaceMesh::kNone ? kUngathered
+                                                                             : kSeveral;
+      }
+    }
+  }
+
+  // Calls visit(i) for the triangles of the part at the edges of one of them.
+  template <typename Visit>
+  void forEachNeighbour(std::uint32_t of, const Visit& visit) const {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t neighbour = neighbours_[std::size_t{3} * of + k];
+      if (neighbour < size_) {
+        visit(neighbour);
+      } else if (neighbour == kSeveral) {
+        mesh_.forEachBeyond(3 * triangleOf(of) + k, [&](std::uint32_t t) {
+          if (numberOf(t) < size_) {
+            visit(numberOf(t));
+          }
+        });
+      }
+    }
+  }
 
   // Gathers triangles of similar direction from a first one on, which get a number in number_of. patch: the
   // one to which they belong; kUngathered: to any.
   void gather(std::uint32_t seed, std::uint32_t max_triangles, std::uint32_t patch, std::uint32_t number,
               std::vector<std::uint32_t>& number_of, std::vector<std::uint32_t>& members) {
-    const Vec3d& first = normals_[triangleOf(seed)];
+    const Vec3d& first = normals_[seed];
     members.assign(1, seed);
     number_of[seed] = number;
-    const auto take = [&](std::uint32_t t) {
-      const std::uint32_t i = parts_.place_of[t] - begin_part_;  // large if t is of another part
-      if (i < size_ && number_of[i] == kUngathered && members.size() < max_triangles &&
-          (patch == kUngathered || patch_of_[i] == patch) && isSimilar(normals_[t], first, min_cosine_)) {
+    const auto take = [&](std::uint32_t i) {
+      if (number_of[i] == kUngathered && members.size() < max_triangles &&
+          (patch == kUngathered || patch_of_[i] == patch) && isSimilar(normals_[i], first, min_cosine_)) {
         number_of[i] = number;
         members.push_back(i);
       }
     };
     for (std::size_t next = 0; next < members.size() && members.size() < max_triangles; ++next) {
-      const Corner corner = 3 * triangleOf(members[next]);
-      mesh_.forEachBeyond(corner, take);
-      mesh_.forEachBeyond(corner + 1, take);
-      mesh_.forEachBeyond(corner + 2, take);
+      forEachNeighbour(members[next], take);
     }
   }
 
   const SurfaceMesh& mesh_;
-  std::span<const Vec3d> normals_;
   PartTriangles& parts_;
   const std::uint32_t patch_triangles_, cluster_triangles_;
   const double min_cosine_;
   // These belong to the part that is being gathered.
   std::uint32_t begin_part_ = 0, size_ = 0;
+  std::vector<Vec3d> normals_;             // unit
+  std::vector<std::uint32_t> neighbours_;  // by corner: one of the part, kSeveral, or none
   std::vector<std::uint32_t> patch_of_, cluster_of_;
   std::vector<std::uint32_t> in_patch_, in_cluster_;
   std::vector<std::uint32_t> by_patch_;  // triangles, in the order of patches
 };
 
 // Sets where some triangles lie and which way they face. corners_of(i): the three vertices of triangle i of
-// `count`. Part: a SurfaceCluster or a SurfacePatch. Returns the cosine of the greatest angle between normals
-// and that of the supporting plane, rounded down.
+// `count`. normals: scratch. Part: a SurfaceCluster or a SurfacePatch. Returns the cosine of the greatest
+// angle between normals and that of the supporting plane, rounded down.
 template <typename CornersOf, typename Part>
-double measure(std::span<const Vec3f> vertices, std::uint32_t count, const CornersOf& corners_of, Part& part,
-               Box& bounds) {
+double measure(std::span<const Vec3f> vertices, std::uint32_t count, const CornersOf& corners_of,
+               std::vector<Vec3d>& normals, Part& part, Box& bounds) {
   Vec3d axis{};
+  normals.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    axis += areaNormal(vertices, corners_of(i));
+    normals.push_back(areaNormal(vertices, corners_of(i)));
+    axis += normals.back();
   }
   const double size = length(axis);
   axis = size > 0.0 ? axis / size : Vec3d{0.0, 0.0, 1.0};
   double cosine = 1.0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest, reach = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t* const corners = corners_of(i);
-    const Vec3d normal = unitNormal(vertices, corners);
-    cosine = normal == Vec3d{} ? cosine : std::min(cosine, dot(normal, axis));
+    const double twice_area = length(normals[i]);
+    cosine = twice_area > 0.0 ? std::min(cosine, dot(normals[i] / twice_area, axis)) : cosine;
     for (int k = 0; k < 3; ++k) {
       const Vec3f& at = vertices[corners[k]];
       const Vec3d p(at);
@@ -249,6 +272,7 @@ struct Place {
 void writeDivision(const SceneView& scene, const SurfaceMesh& mesh, std::span<const std::uint32_t> by_patch,
                    const Division& division, Place at, SurfaceSet& set) {
   std::size_t patch_here = 0, cluster_here = 0;
+  std::vector<Vec3d> normals;
   for (const std::uint32_t patch_count : division.patch_counts) {
     SurfacePart& part = set.parts[at.part];
     part.first_patch = at.patch;
@@ -272,8 +296,8 @@ void writeDivision(const SceneView& scene, const SurfaceMesh& mesh, std::span<co
         cluster.double_sided = double_sided;
         cosine = measure(
             mesh.vertices, cluster.triangle_count,
-            [&](std::uint32_t t) { return &set.triangles[3 * std::size_t{at.triangle + t}]; }, cluster,
-            bounds);
+            [&](std::uint32_t t) { return &set.triangles[3 * std::size_t{at.triangle + t}]; }, normals,
+            cluster, bounds);
         at.triangle += cluster.triangle_count;
         set.cluster_bounds[at.cluster++] = bounds;
       }
@@ -284,8 +308,8 @@ void writeDivision(const SceneView& scene, const SurfaceMesh& mesh, std::span<co
       } else {
         cosine = measure(
             mesh.vertices, at.triangle - first_triangle,
-            [&](std::uint32_t t) { return mesh.triangles[by_patch[first_triangle + t]].data(); }, patch,
-            patch_bounds);
+            [&](std::uint32_t t) { return mesh.triangles[by_patch[first_triangle + t]].data(); }, normals,
+            patch, patch_bounds);
       }
       patch.cone_cosine = static_cast<float>(cosine - kRounding);
       set.patch_bounds[at.patch++] = patch_bounds;
@@ -310,8 +334,7 @@ std::vector<std::uint32_t> chunksOf(std::span<const std::uint32_t> first_of_part
 
 Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const SurfaceSettings& settings,
                          const ParallelFor& parallel_for, SurfaceSet& set) {
-  LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
-  PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
+  PartTriangles parts = gatherParts(scene, mesh, clamped(settings.part_triangles));
   const std::vector<std::uint32_t> first_part = chunksOf(parts.first);
   Gathered gathered;
   gathered.part_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
@@ -319,7 +342,7 @@ Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const Surfac
   set.triangles = base::unsetVector<std::uint32_t>(3 * mesh.triangleCount());
   std::vector<Division> divisions(first_part.size() - 1);
   parallel_for(static_cast<std::uint32_t>(divisions.size()), [&](std::uint32_t begin, std::uint32_t end) {
-    PartDivider divider(mesh, normals, parts, settings);
+    PartDivider divider(mesh, parts, settings);
     for (std::uint32_t c = begin; c < end; ++c) {
       for (std::uint32_t p = first_part[c]; p < first_part[c + 1]; ++p) {
         divider.divide(p, divisions[c], set.triangles, gathered.cluster_of);
@@ -328,7 +351,6 @@ Gathered gatherTriangles(const SceneView& scene, SurfaceMesh& mesh, const Surfac
   });
 
   // Their memory is of use to what follows.
-  base::freeVector(normals);
   base::freeVector(parts.place_of);
   mesh.forgetJunctions();
 
