@@ -24,6 +24,7 @@
 
 #include "src/base/hash_slots.h"
 #include "src/base/parallel_rows.h"
+#include "src/base/scratch_array.h"
 #include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
 #include "src/occluders/conform_pairs.h"
@@ -83,7 +84,9 @@ class AxisLines {
   // numbers: of the vertices to group. on_lines: points on all lines that are asked for.
   AxisLines(std::span<const Vec3f> vertices, std::span<const std::uint32_t> numbers,
             std::span<const Vec3f> on_lines, int axis, const ParallelFor& parallel_for)
-      : axis_(axis), shift_(64 - static_cast<int>(std::bit_width(numbers.size() / kVerticesOfRow + 1))) {
+      : vertices_(vertices),
+        axis_(axis),
+        shift_(64 - static_cast<int>(std::bit_width(numbers.size() / kVerticesOfRow + 1))) {
     // Which lines are asked for, by some bits of their hash: most vertices may be on none of them.
     const int bit_shift = shift_ - kWantedBitsOfRow;
     std::vector<bool> wanted(std::size_t{1} << (64 - bit_shift));
@@ -100,17 +103,34 @@ class AxisLines {
                             }
                           }
                         });
+    place_of_ = base::unsetVector<std::uint32_t>(rows_.items().empty() ? 0 : vertices.size());
     base::Parts(rows_.count(), kLineRowsOfPart)
         .run(parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t row = begin; row < end; ++row) {
             std::sort(rows_[row].begin(), rows_[row].end());
+            for (const Entry& entry : rows_[row]) {
+              place_of_[entry.vertex] = static_cast<std::uint32_t>(&entry - rows_.items().data());
+            }
           }
         });
   }
 
-  // Returns those strictly between two points of one line, a the lower one.
-  std::span<const Entry> between(const Vec3f& a, const Vec3f& b) const {
-    return within(entryOf(a, 0xffffffffu), entryOf(b, 0));
+  // Returns those strictly between two of the vertices that lie on one line that was asked for, the first one
+  // lower; of too many, more than kMostBends.
+  std::span<const Entry> between(std::uint32_t first, std::uint32_t last) const {
+    const std::span<const Entry> behind = rows_.items().subspan(place_of_[first]);
+    const Entry& from = behind.front();
+    const float to = vertices_[last][axis_];
+    std::size_t begin = 1;
+    while (begin < behind.size() && behind[begin].line == from.line && behind[begin].along == from.along) {
+      ++begin;
+    }
+    std::size_t end = begin;  // few lie there, so each is looked at
+    while (end < behind.size() && behind[end].line == from.line && behind[end].along < to &&
+           end - begin <= kMostBends) {
+      ++end;
+    }
+    return behind.subspan(begin, end - begin);
   }
   // Returns those at a point.
   std::span<const Entry> at(const Vec3f& point) const {
@@ -136,8 +156,10 @@ class AxisLines {
     return {begin, end};
   }
 
+  std::span<const Vec3f> vertices_;
   int axis_, shift_;
   base::Rows<Entry> rows_;
+  LargeVector<std::uint32_t> place_of_;  // by vertex that is in the rows: its place among all of them
 };
 
 class EdgeSearch {
@@ -296,7 +318,7 @@ class EdgeSearch {
       return wanted ? std::span<const std::uint32_t>(ends_) : std::span<const std::uint32_t>();
     };
     // By axis. Places of steps are looked up among the lines along the first axis.
-    std::array<std::vector<Vec3f>, 3> on_lines;
+    std::array<LargeVector<Vec3f>, 3> on_lines;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if (searches_[e] == Search::kInSteps) {
         forEachPlace(edges_[e], [&](std::uint64_t, const Vec3f& place) { on_lines[0].push_back(place); });
@@ -305,7 +327,7 @@ class EdgeSearch {
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
-      const std::vector<Vec3f>& points = on_lines[static_cast<std::size_t>(axis)];
+      const LargeVector<Vec3f>& points = on_lines[static_cast<std::size_t>(axis)];
       lines_.emplace_back(vertices_, endsIf(!points.empty()), points, axis, parallel_for_);
     }
     const std::vector<std::uint32_t> numbers = endsInBoxes();
@@ -424,7 +446,8 @@ class EdgeSearch {
   void findAlong(int axis, const MeshEdge& edge, std::vector<OnEdge>& found) const {
     const Vec3f &low = at(edge.low), &high = at(edge.high);
     const bool up = low[axis] < high[axis];
-    const auto between = lines_[static_cast<std::size_t>(axis)].between(up ? low : high, up ? high : low);
+    const auto between =
+        lines_[static_cast<std::size_t>(axis)].between(up ? edge.low : edge.high, up ? edge.high : edge.low);
     for (const AxisLines::Entry& entry : between) {
       found.push_back({up ? entry.along : -entry.along, entry.vertex});
     }
