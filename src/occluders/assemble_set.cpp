@@ -38,9 +38,9 @@ void writeOccluder(const RankedPolygon& ranked, std::uint32_t first_vertex, std:
   occluder.watertight_edges = hasNoSharpCorner(corners);
   occluder.object = ranked.object;
   occluder.area = static_cast<float>(polygon.area);
-  occluder.slack = static_cast<float>(polygon.slack * 1.001);
+  occluder.slack = polygon.slack;
   occluder.plane = polygon.plane;
-  occluder.centroid = Vec3f(polygon.centroid);
+  occluder.centroid = polygon.centroid;
 }
 
 // Writes the occluders with their corners. Returns the first vertices by place.
@@ -56,7 +56,7 @@ LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
   LargeVector<Size> sizes = base::unsetVector<Size>(polygons.size());  // by id
   base::forEach(parallel_for, polygons.size(), [&](std::uint32_t i) {
     const FoundPolygon& polygon = *polygons[i].polygon;
-    sizes[polygons[i].id.value] = {polygon.area, static_cast<std::uint32_t>(polygon.corners.size())};
+    sizes[polygons[i].id.value] = {polygon.area, static_cast<std::uint32_t>(polygon.corners().size())};
   });
   std::uint32_t vertices = 0;
   for (Size& size : sizes) {
@@ -75,9 +75,9 @@ LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
         hwy::Prefetch(set.vertices.data() + by_place[i + kAhead]);
       }
       const FoundPolygon& polygon = *polygons[i].polygon;
-      const std::span<Vec3f> corners = std::span(set.vertices).subspan(by_place[i], polygon.corners.size());
+      const std::span<Vec3f> corners = std::span(set.vertices).subspan(by_place[i], polygon.corners().size());
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        corners[k] = positions[polygon.loop[polygon.corners[k]]];
+        corners[k] = positions[polygon.loop()[polygon.corners()[k]]];
       }
       writeOccluder(polygons[i], by_place[i], corners, set.occluders[polygons[i].id.value]);
     }

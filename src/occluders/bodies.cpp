@@ -12,13 +12,13 @@ namespace {
 constexpr std::size_t kObjectsOfPart = 1024;
 
 std::uint32_t cornerOf(const FoundPolygon& polygon, std::size_t number) {
-  return polygon.loop[polygon.corners[number]];
+  return polygon.loop()[polygon.corners()[number]];
 }
 
 // Vertex number i of a chain.
 std::uint32_t vertexOf(const FoundPolygon& polygon, const CornerChain& chain, std::uint32_t i) {
   const std::size_t at = std::size_t{chain.begin} + i;
-  return polygon.loop[at < polygon.loop.size() ? at : at - polygon.loop.size()];
+  return polygon.loop()[at < polygon.loop().size() ? at : at - polygon.loop().size()];
 }
 
 bool runAgainst(const FoundPolygon& p, const CornerChain& a, const FoundPolygon& q, const CornerChain& b) {
@@ -56,8 +56,8 @@ class BodyMaker {
       const FoundPolygon& polygon = *face->polygon;
       polygons_.push_back(&polygon);
       body.slack = std::max(body.slack, set_[face->id].slack);
-      for (const std::uint32_t corner : polygon.corners) {
-        numberOf(polygon.loop[corner], body.bounds);
+      for (const std::uint32_t corner : polygon.corners()) {
+        numberOf(polygon.loop()[corner], body.bounds);
       }
       BodyFace& body_face = lists_.faces.emplace_back();
       body_face.plane = polygon.plane;
@@ -160,7 +160,7 @@ void append(const BodyLists& part, OccluderSet& set) {
 void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
   keys_.clear();
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    const auto corners = static_cast<std::uint32_t>(polygons[p]->corners.size());
+    const auto corners = static_cast<std::uint32_t>(polygons[p]->corners().size());
     std::uint32_t from = corners > 0 ? cornerOf(*polygons[p], corners - 1) : 0;
     for (std::uint32_t i = 0; i < corners; ++i) {
       const std::uint32_t to = cornerOf(*polygons[p], i), number = i > 0 ? i - 1 : corners - 1;
@@ -173,9 +173,9 @@ void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
   chains_.clear();
   for (const base::SortKey& key : keys_) {
     const auto p = static_cast<std::uint32_t>(key.second >> 32), i = static_cast<std::uint32_t>(key.second);
-    const std::span<const std::uint32_t> corners = polygons[p]->corners;
+    const std::span<const std::uint32_t> corners = polygons[p]->corners();
     const std::uint32_t begin = corners[i], end = corners[i + 1 < corners.size() ? i + 1 : 0];
-    const auto size = static_cast<std::uint32_t>(polygons[p]->loop.size());
+    const auto size = static_cast<std::uint32_t>(polygons[p]->loop().size());
     chains_.push_back({key.first, p, begin, end > begin ? end - begin : end + size - begin});
   }
   mated_.assign(polygons.size(), 1);
@@ -196,7 +196,7 @@ void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
 bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double tolerance) {
   std::size_t edges = 0;
   for (const FoundPolygon* face : faces) {
-    edges += face->corners.size();
+    edges += face->corners().size();
   }
   edges /= 2;
   // Euler: as many vertices as edges and two, less the faces.
@@ -207,7 +207,7 @@ bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double toler
   vertices_.clear();
   corners_.clear();
   for (const FoundPolygon* face : faces) {
-    for (std::size_t corner = 0; corner < face->corners.size(); ++corner) {
+    for (std::size_t corner = 0; corner < face->corners().size(); ++corner) {
       const std::uint32_t vertex = cornerOf(*face, corner);
       if (std::find(vertices_.begin(), vertices_.end(), vertex) == vertices_.end()) {
         vertices_.push_back(vertex);
@@ -264,7 +264,7 @@ void BodyFinder::find(std::span<FoundPolygon* const> polygons, double tolerance)
     if (isBody(faces_, tolerance)) {
       for (const std::uint32_t p : members) {
         polygons[p]->body = next;
-        polygons[p]->body_size = static_cast<std::uint32_t>(members.size());
+        polygons[p]->body_size = static_cast<std::uint8_t>(members.size());
       }
       ++next;
     }

@@ -47,9 +47,9 @@ class BodyFinder {
  public:
   explicit BodyFinder(std::span<const Vec3f> positions) : positions_(positions) {}
 
-  // Numbers the bodies among the polygons of one object from 0, and fills FoundPolygon::body and body_size.
-  // Polygons make a body where each edge is, mesh edge by mesh edge, an edge of one other, and no vertex lies
-  // before any of the planes by more than the tolerance, and some clearly behind it.
+  // Numbers the bodies among polygons of one object from 0, and fills FoundPolygon::body and body_size.
+  // Polygons make a body where each edge is, mesh edge by mesh edge, an edge of one other of those given, and
+  // no vertex lies before any of the planes by more than the tolerance, and some clearly behind it.
   void find(std::span<FoundPolygon* const> polygons, double tolerance);
 
  private:

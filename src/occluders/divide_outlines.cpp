@@ -32,8 +32,8 @@ std::vector<MeshEdge> openEdges(std::size_t position_count, std::span<const Rank
                           if (polygon.body != FoundPolygon::kNoBody) {
                             continue;
                           }
-                          std::uint32_t from = polygon.loop.back();
-                          for (const std::uint32_t to : polygon.loop) {
+                          std::uint32_t from = polygon.loop().back();
+                          for (const std::uint32_t to : polygon.loop()) {
                             pair(std::min(from, to),
                                  std::uint64_t{std::max(from, to)} << 1 | (from < to ? 0u : 1u));
                             from = to;
@@ -116,7 +116,7 @@ void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& 
   std::vector<bool> left_whole(edges.count());
   std::vector<std::size_t> along;  // divided edges of a polygon's edge
   for (const RankedPolygon& ranked : polygons) {
-    const std::span<const std::uint32_t> loop = ranked.polygon->loop, corners = ranked.polygon->corners;
+    const std::span<const std::uint32_t> loop = ranked.polygon->loop(), corners = ranked.polygon->corners();
     for (std::size_t c = 0; c < corners.size(); ++c) {
       std::size_t pieces = 0;
       along.clear();
@@ -152,27 +152,26 @@ void divideOutlines(std::span<const Vec3f> positions, const ParallelFor& paralle
     const FoundPolygon& polygon = *ranked.polygon;
     loop.clear();
     place.clear();
-    for (std::size_t i = 0; i < polygon.loop.size(); ++i) {
-      const MeshEdge edge = meshEdge(polygon.loop[i], nextIn(polygon.loop, i));
+    for (std::size_t i = 0; i < polygon.loop().size(); ++i) {
+      const MeshEdge edge = meshEdge(polygon.loop()[i], nextIn(polygon.loop(), i));
       place.push_back(static_cast<std::uint32_t>(loop.size()));
-      loop.push_back(polygon.loop[i]);
+      loop.push_back(polygon.loop()[i]);
       const std::span<const std::uint32_t> on_edge = edges.on(edge);
-      if (polygon.loop[i] == edge.low) {
+      if (polygon.loop()[i] == edge.low) {
         loop.insert(loop.end(), on_edge.begin(), on_edge.end());
       } else {
         loop.insert(loop.end(), on_edge.rbegin(), on_edge.rend());
       }
     }
-    if (loop.size() == polygon.loop.size()) {
+    if (loop.size() == polygon.loop().size()) {
       continue;
     }
     corners.clear();
-    for (const std::uint32_t corner : polygon.corners) {
+    for (const std::uint32_t corner : polygon.corners()) {
       corners.push_back(place[corner]);
     }
     FoundPolygon& changed = divided.polygons.emplace_back(polygon);
-    changed.loop = divided.ids.copy(loop);
-    changed.corners = divided.ids.copy(corners);
+    changed.setOutline(divided.ids.copy(loop, corners), corners.size());
     ranked.polygon = &changed;
   }
 }

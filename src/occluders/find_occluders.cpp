@@ -13,6 +13,7 @@
 #include "src/occluders/assemble_set.h"
 #include "src/occluders/bodies.h"
 #include "src/occluders/divide_outlines.h"
+#include "src/occluders/occluder_limits.h"
 #include "src/occluders/polygon_merge.h"
 
 namespace sightline {
@@ -39,13 +40,10 @@ class ObjectSearch {
 
   void search(const Object& object) {
     const std::size_t first = result_.polygons.size();
+    component_of_.clear();
     searchTriangles(object);
     result_.polygon_ends.push_back(static_cast<std::uint32_t>(result_.polygons.size()));
-    pointers_.clear();
-    for (FoundPolygon& polygon : std::span(result_.polygons).subspan(first)) {
-      pointers_.push_back(&polygon);
-    }
-    bodies_.find(pointers_, tolerance_);
+    findBodies(std::span(result_.polygons).subspan(first));
   }
 
  private:
@@ -66,6 +64,7 @@ class ObjectSearch {
         const std::size_t first = result_.polygons.size();
         merger_.merge(patch, patches_.trianglesOf(patch), tolerance_, result_.polygons, result_.ids);
         for (FoundPolygon& polygon : std::span(result_.polygons).subspan(first)) {
+          component_of_.push_back(patch.component);
           polygon.double_sided = material.double_sided;
           in_polygons += polygon.triangle_count;
         }
@@ -74,12 +73,34 @@ class ObjectSearch {
     }
   }
 
+  // A body has all polygons beyond its edges, and so all or none of a component. Most polygons of large
+  // meshes are in components of more polygons than any body has, and are left out: so a small solid is a body
+  // also where it stands on an edge of such a mesh.
+  void findBodies(std::span<FoundPolygon> polygons) {
+    polygons_of_component_.clear();
+    for (const std::uint32_t component : component_of_) {
+      if (component >= polygons_of_component_.size()) {
+        polygons_of_component_.resize(component + std::size_t{1});
+      }
+      ++polygons_of_component_[component];
+    }
+    pointers_.clear();
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      if (polygons_of_component_[component_of_[i]] <= occluders::kMaxBodyFaces) {
+        pointers_.push_back(&polygons[i]);
+      }
+    }
+    bodies_.find(pointers_, tolerance_);
+  }
+
   const SceneView& scene_;
   PartResult& result_;
   occluders::PatchFinder patches_;
   occluders::PolygonMerger merger_;
   occluders::BodyFinder bodies_;
   double tolerance_ = 0.0;
+  std::vector<std::uint32_t> component_of_;           // by polygon of the object
+  std::vector<std::uint32_t> polygons_of_component_;  // how many
   std::vector<FoundPolygon*> pointers_;
 };
 

@@ -91,13 +91,13 @@ class Linker {
   }
   // Mesh edges from a corner to another one.
   static std::uint32_t meshEdges(const FoundPolygon& polygon, std::uint32_t from, std::uint32_t to) {
-    return polygon.corners[to] >= polygon.corners[from]
-               ? polygon.corners[to] - polygon.corners[from]
-               : polygon.corners[to] + static_cast<std::uint32_t>(polygon.loop.size()) -
-                     polygon.corners[from];
+    return polygon.corners()[to] >= polygon.corners()[from]
+               ? polygon.corners()[to] - polygon.corners()[from]
+               : polygon.corners()[to] + static_cast<std::uint32_t>(polygon.loop().size()) -
+                     polygon.corners()[from];
   }
   static std::uint32_t nextCorner(const FoundPolygon& polygon, std::uint32_t corner) {
-    return corner + 1 < polygon.corners.size() ? corner + 1 : 0;
+    return corner + 1 < polygon.corners().size() ? corner + 1 : 0;
   }
   std::uint32_t meshEdgeCount(std::uint32_t edge) const {
     const FoundPolygon& polygon = polygonOf(edge);
@@ -109,19 +109,19 @@ class Linker {
   std::array<Vec3f, 2> ownLine(std::uint32_t edge) const {
     const FoundPolygon& polygon = polygonOf(edge);
     const std::uint32_t corner = cornerOf(edge), next = nextCorner(polygon, corner);
-    return {positions_[polygon.loop[polygon.corners[corner]]],
-            positions_[polygon.loop[polygon.corners[next]]]};
+    return {positions_[polygon.loop()[polygon.corners()[corner]]],
+            positions_[polygon.loop()[polygon.corners()[next]]]};
   }
   // Visits both ends of each mesh edge of an edge, the lower vertex first.
   template <typename Visit>
   void forEachMeshEdgeEnd(std::uint32_t edge, Visit visit) const {
     const FoundPolygon& polygon = polygonOf(edge);
-    std::size_t at = polygon.corners[cornerOf(edge)];
+    std::size_t at = polygon.corners()[cornerOf(edge)];
     for (std::uint32_t left = meshEdgeCount(edge); left > 0; --left) {
-      const std::uint32_t from = polygon.loop[at];
-      at = at + 1 < polygon.loop.size() ? at + 1 : 0;
-      visit(positions_[std::min(from, polygon.loop[at])]);
-      visit(positions_[std::max(from, polygon.loop[at])]);
+      const std::uint32_t from = polygon.loop()[at];
+      at = at + 1 < polygon.loop().size() ? at + 1 : 0;
+      visit(positions_[std::min(from, polygon.loop()[at])]);
+      visit(positions_[std::max(from, polygon.loop()[at])]);
     }
   }
 
@@ -132,8 +132,8 @@ class Linker {
     parts.run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const FoundPolygon& polygon = *polygons_[i].polygon;
-        first_edge_[i + 1] = static_cast<std::uint32_t>(polygon.corners.size());
-        first_use_[i + 1] = static_cast<std::uint32_t>(polygon.loop.size());
+        first_edge_[i + 1] = static_cast<std::uint32_t>(polygon.corners().size());
+        first_use_[i + 1] = static_cast<std::uint32_t>(polygon.loop().size());
       }
     });
     std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
@@ -160,8 +160,8 @@ class Linker {
     base::groupIntoRows(parallel_for_, positions_.size(), polygons_.size(), by_vertex_.first(),
                         by_vertex_.all(), [this](std::size_t begin, std::size_t end, auto&& pair) {
                           for (std::size_t i = begin; i < end; ++i) {
-                            const std::span<const std::uint32_t> loop = polygons_[i].polygon->loop;
-                            std::size_t at = polygons_[i].polygon->corners[0];
+                            const std::span<const std::uint32_t> loop = polygons_[i].polygon->loop();
+                            std::size_t at = polygons_[i].polygon->corners()[0];
                             for (std::uint32_t use = first_use_[i]; use < first_use_[i + 1]; ++use) {
                               const std::uint32_t from = loop[at];
                               at = at + 1 < loop.size() ? at + 1 : 0;
@@ -422,8 +422,8 @@ class Linker {
     const FoundPolygon& polygon = polygonOf(edge);
     const std::uint32_t count = meshEdgeCount(edge);
     for (std::uint32_t k = 1; k < count && count <= kMaxMeshEdges; ++k) {
-      const std::size_t at = (polygon.corners[cornerOf(edge)] + k) % polygon.loop.size();
-      set_.edge_vertices[first + k - 1] = positions_[polygon.loop[at]];
+      const std::size_t at = (polygon.corners()[cornerOf(edge)] + k) % polygon.loop().size();
+      set_.edge_vertices[first + k - 1] = positions_[polygon.loop()[at]];
     }
   }
 

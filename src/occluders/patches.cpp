@@ -65,6 +65,7 @@ void PatchFinder::findNeighbours(bool double_sided) {
   }
   sorter_.sort(keys_);
   neighbour_.assign(keys_.size(), kNone);
+  components_.reset(triangles_.size());
   for (std::size_t i = 0, end = 0; i < keys_.size(); i = end) {
     for (end = i + 1; end < keys_.size() && keys_[end].first == keys_[i].first;) {
       ++end;
@@ -73,6 +74,7 @@ void PatchFinder::findNeighbours(bool double_sided) {
     if (end - i == 2 && (double_sided || ((a ^ b) & 1) != 0)) {
       neighbour_[a >> 32] = static_cast<std::uint32_t>(b >> 32);
       neighbour_[b >> 32] = static_cast<std::uint32_t>(a >> 32);
+      components_.unite(static_cast<std::uint32_t>(a >> 32) / 3, static_cast<std::uint32_t>(b >> 32) / 3);
     }
   }
 }
@@ -109,6 +111,7 @@ void PatchFinder::grow(std::uint32_t seed) {
   const Vec3d normal = normalized(triangles_[seed].normal);
   patch.plane = {normal, -dot(normal, at(triangles_[seed].corners[0]))};
   patch.first = static_cast<std::uint32_t>(in_patches_.size());
+  patch.component = components_.root(seed);
   queue_.assign(1, seed);
   taken_[seed] = 1;
   flipped_[seed] = 0;

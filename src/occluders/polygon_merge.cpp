@@ -27,24 +27,26 @@ std::uint64_t directedEdge(std::uint32_t from, std::uint32_t to) {
 
 }  // namespace
 
-std::span<const std::uint32_t> IdStore::copy(std::span<const std::uint32_t> ids) {
+std::span<const std::uint32_t> IdStore::copy(std::span<const std::uint32_t> loop,
+                                             std::span<const std::uint32_t> corners) {
   constexpr std::size_t kBlock = 16384;
-  if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < ids.size()) {
-    blocks_.emplace_back().reserve(std::max(kBlock, ids.size()));
+  const std::size_t size = loop.size() + corners.size();
+  if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < size) {
+    blocks_.emplace_back().reserve(std::max(kBlock, size));
   }
   std::vector<std::uint32_t>& block = blocks_.back();
-  block.insert(block.end(), ids.begin(), ids.end());
-  return std::span(block).last(ids.size());
+  block.insert(block.end(), loop.begin(), loop.end());
+  block.insert(block.end(), corners.begin(), corners.end());
+  return std::span(block).last(size);
 }
 
 FoundPolygon foundPolygon(const GrowingPolygon& polygon, const Plane& plane, IdStore& ids) {
   FoundPolygon found;
-  found.loop = ids.copy(polygon.loop);
-  found.corners = ids.copy(polygon.corners);
+  found.setOutline(ids.copy(polygon.loop, polygon.corners), polygon.corners.size());
   found.plane = plane;
-  found.centroid = polygon.centroid;
+  found.centroid = Vec3f(polygon.centroid);
   found.area = polygon.area;
-  found.slack = polygon.slack;
+  found.slack = static_cast<float>(polygon.slack * 1.001);
   found.triangle_count = polygon.triangle_count;
   return found;
 }

@@ -12,29 +12,48 @@
 #include "sightline/math/plane.h"
 #include "sightline/math/vec3.h"
 #include "src/base/sort_keys.h"
+#include "src/base/union_find.h"
 
 namespace sightline::occluders {
 
-// A convex polygon over shared vertices, before ranking.
-struct FoundPolygon {
-  std::span<const std::uint32_t> loop;     // vertex ids along the whole boundary, counter-clockwise
-  std::span<const std::uint32_t> corners;  // positions in loop where the boundary turns
-  Plane plane;                             // unit normal
-  Vec3d centroid;
+// A convex polygon over shared vertices, before ranking. Large scenes have ten million, so each is kept
+// small.
+class FoundPolygon {
+ public:
+  static constexpr std::uint32_t kNoBody = 0xffffffffu;
+
+  Plane plane;  // unit normal
   double area = 0.0;
-  double slack = 0.0;
+  Vec3f centroid;
+  float slack = 0.0f;  // rounded up
   std::uint32_t triangle_count = 0;
+  std::uint32_t body = kNoBody;  // of the object's bodies, see bodies.h
+  std::uint8_t body_size = 0;    // polygons that it has, at most kMaxBodyFaces
   bool double_sided = false;
 
-  static constexpr std::uint32_t kNoBody = 0xffffffffu;
-  std::uint32_t body = kNoBody;  // of the object's bodies, see bodies.h
-  std::uint32_t body_size = 0;   // polygons that it has
+  // Vertex ids along the whole boundary, counter-clockwise.
+  std::span<const std::uint32_t> loop() const { return {outline_, loop_size_}; }
+  // Positions in the loop where the boundary turns, at most 64.
+  std::span<const std::uint32_t> corners() const { return {outline_ + loop_size_, corner_count_}; }
+  // outline: the loop and then the corners, which stay where they are.
+  void setOutline(std::span<const std::uint32_t> outline, std::size_t corner_count) {
+    outline_ = outline.data();
+    loop_size_ = static_cast<std::uint32_t>(outline.size() - corner_count);
+    corner_count_ = static_cast<std::uint8_t>(corner_count);
+  }
+
+ private:
+  std::uint8_t corner_count_ = 0;
+  std::uint32_t loop_size_ = 0;
+  const std::uint32_t* outline_ = nullptr;
 };
 
-// Holds the loops and corners of found polygons. They stay where they are, also when this is moved.
+// Holds the outlines of found polygons. They stay where they are, also when this is moved.
 class IdStore {
  public:
-  std::span<const std::uint32_t> copy(std::span<const std::uint32_t> ids);
+  // Returns a copy of the ids of a loop and of its corners, one after the other.
+  std::span<const std::uint32_t> copy(std::span<const std::uint32_t> loop,
+                                      std::span<const std::uint32_t> corners);
 
  private:
   std::vector<std::vector<std::uint32_t>> blocks_;
@@ -51,6 +70,9 @@ struct Patch {
   Plane plane;
   double deviation = 0.0;                       // largest distance of a vertex from the plane
   std::uint32_t first = 0, triangle_count = 0;  // into PatchFinder::triangles()
+  // Patches of the object that adjoin each other, directly or by others, have the same number, below the
+  // number of its triangles.
+  std::uint32_t component = 0;
 };
 
 // Cuts the triangles of objects into patches, one object after the other.
@@ -86,6 +108,7 @@ class PatchFinder {
   std::vector<Usable> triangles_;
   // The one triangle beyond each edge, as 3 * triangle + edge; kNone where there is none, or more than one.
   std::vector<std::uint32_t> neighbour_;
+  base::UnionFind components_;                 // of triangles, over these edges
   std::vector<std::uint8_t> taken_, flipped_;  // by triangle
   std::vector<std::uint32_t> queue_;
   std::vector<Patch> patches_;
