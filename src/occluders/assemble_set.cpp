@@ -3,9 +3,11 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "src/base/parallel_rows.h"
+#include "src/base/scratch_array.h"
 #include "src/occluders/bodies.h"
 #include "src/occluders/links.h"
 
@@ -29,9 +31,11 @@ bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   return true;
 }
 
+// memory: what it holds before does not matter.
 void writeOccluder(const RankedPolygon& ranked, std::uint32_t first_vertex, std::span<const Vec3f> corners,
-                   Occluder& occluder) {
+                   Occluder* memory) {
   const FoundPolygon& polygon = *ranked.polygon;
+  Occluder& occluder = *::new (memory) Occluder();
   occluder.first_vertex = first_vertex;
   occluder.vertex_count = static_cast<std::uint16_t>(corners.size());
   occluder.double_sided = polygon.double_sided;
@@ -66,7 +70,7 @@ LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
   LargeVector<std::uint32_t> by_place = base::unsetVector<std::uint32_t>(polygons.size());
   base::forEach(parallel_for, polygons.size(),
                 [&](std::uint32_t i) { by_place[i] = sizes[polygons[i].id.value].vertices; });
-  set.occluders.resize(polygons.size());
+  set.occluders = base::unsetVector<Occluder>(polygons.size());
   set.vertices = base::unsetVector<Vec3f>(vertices);
   parallel_for(static_cast<std::uint32_t>(polygons.size()), [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -79,7 +83,7 @@ LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
       for (std::size_t k = 0; k < corners.size(); ++k) {
         corners[k] = positions[polygon.loop()[polygon.corners()[k]]];
       }
-      writeOccluder(polygons[i], by_place[i], corners, set.occluders[polygons[i].id.value]);
+      writeOccluder(polygons[i], by_place[i], corners, &set.occluders[polygons[i].id.value]);
     }
   });
   return by_place;

@@ -9,6 +9,7 @@
 #include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
 #include "src/base/parts.h"
+#include "src/base/scratch_array.h"
 #include "src/base/sort_keys.h"
 #include "src/occluders/assemble_set.h"
 #include "src/occluders/bodies.h"
@@ -231,6 +232,7 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   }
   AllPolygons all = listAll(parts);
   rank(scene, settings, parallel_for, all, set.report);
+  base::freeVector(all.body_of);
   set.objects.resize(scene.objects.size());
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     set.objects[o] = ObjectId(o);

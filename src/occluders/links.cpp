@@ -374,7 +374,7 @@ class Linker {
       lines += std::exchange(edge.line, lines);
       vertices += std::exchange(edge.first_edge_vertex, vertices);
     }
-    set_.lines.resize(lines);
+    set_.lines = base::unsetVector<std::array<Vec3f, 2>>(lines);  // each edge's line is written
     set_.edge_vertices.resize(vertices);
   }
 
