@@ -29,16 +29,16 @@ struct LooseSide {
   std::uint64_t key() const { return std::uint64_t{high} << 32 | side.code; }
 };
 
-// Lists the sides of some triangles by their lower vertices, sorted. numberOf(i): the number of triangle i of
-// `count` in the mesh.
+// Lists the sides of some triangles by their lower vertices, sorted. number_of(i): the number of triangle i
+// of `count` in the mesh.
 template <typename NumberOf>
-base::Rows<LooseSide> sidesByVertex(const SurfaceMesh& mesh, std::size_t count, const NumberOf& numberOf,
+base::Rows<LooseSide> sidesByVertex(const SurfaceMesh& mesh, std::size_t count, const NumberOf& number_of,
                                     const ParallelFor& parallel_for) {
   base::Rows<LooseSide> by_low;
   base::groupIntoRows(parallel_for, mesh.vertices.size(), count, by_low.first(), by_low.all(),
                       [&](std::size_t begin, std::size_t end, auto&& pair) {
                         for (std::size_t i = begin; i < end; ++i) {
-                          const std::uint32_t t = numberOf(i);
+                          const std::uint32_t t = number_of(i);
                           for (std::uint32_t k = 0; k < 3; ++k) {
                             const std::uint32_t a = mesh.triangles[t][k],
                                                 b = mesh.triangles[t][k == 2 ? 0 : k + 1];
@@ -68,7 +68,7 @@ void forEachEdge(std::span<const LooseSide> row, const Visit& visit) {
 }
 
 // Edges at which triangles do not cancel, ascending.
-LargeVector<MeshEdge> openEdges(const base::Rows<LooseSide>& sides, const ParallelFor& parallel_for) {
+LargeVector<MeshEdge> openMeshEdges(const base::Rows<LooseSide>& sides, const ParallelFor& parallel_for) {
   const base::Parts parts(sides.count(), kVerticesOfPart);
   base::PartStore store;
   std::vector<base::KeptItems<MeshEdge>> of_part(parts.count());
@@ -100,16 +100,16 @@ LargeVector<MeshEdge> openEdges(const base::Rows<LooseSide>& sides, const Parall
 }
 
 // The pieces of triangles whose edges have vertices on them.
-struct Pieces {
+struct DividedTriangles {
   std::vector<std::uint32_t> divided;  // triangles of the mesh, ascending
   BentTriangles triangles;             // the source is a place in `divided`
 };
 
-Pieces piecesOf(const SurfaceMesh& mesh, const base::Rows<LooseSide>& sides,
-                const ParallelFor& parallel_for) {
-  const LargeVector<MeshEdge> open = openEdges(sides, parallel_for);
+DividedTriangles divideTriangles(const SurfaceMesh& mesh, const base::Rows<LooseSide>& sides,
+                                 const ParallelFor& parallel_for) {
+  const LargeVector<MeshEdge> open = openMeshEdges(sides, parallel_for);
   const base::Rows<std::uint32_t> on_edges = verticesOnEdges(mesh.vertices, open, parallel_for);
-  Pieces pieces;
+  DividedTriangles pieces;
   std::vector<MeshEdge> edges;
   base::Rows<std::uint32_t> through;
   for (std::size_t i = 0; i < open.size(); ++i) {
@@ -145,7 +145,7 @@ struct Renumbering {
 };
 
 // Puts pieces in the place of their triangles. A triangle all of whose pieces have collapsed stays.
-Renumbering replaceDivided(SurfaceMesh& mesh, const Pieces& pieces) {
+Renumbering replaceDivided(SurfaceMesh& mesh, const DividedTriangles& pieces) {
   const BentTriangles& made = pieces.triangles;
   Renumbering numbers{base::unsetVector<std::uint32_t>(mesh.triangleCount()), {}};
   numbers.pieces.reserve(made.source.size());
@@ -300,7 +300,7 @@ SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for) {
 void connect(SurfaceMesh& mesh, bool divide_edges, const ParallelFor& parallel_for) {
   base::Rows<LooseSide> sides = sidesByVertex(
       mesh, mesh.triangleCount(), [](std::size_t i) { return static_cast<std::uint32_t>(i); }, parallel_for);
-  Pieces pieces = divide_edges ? piecesOf(mesh, sides, parallel_for) : Pieces{};
+  DividedTriangles pieces = divide_edges ? divideTriangles(mesh, sides, parallel_for) : DividedTriangles{};
   if (pieces.triangles.source.empty()) {
     findBeyond(
         mesh, [&](std::size_t low, std::vector<LooseSide>&) { return sides[low]; }, parallel_for);

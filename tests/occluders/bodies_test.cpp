@@ -250,6 +250,30 @@ TEST(Bodies, BoxesThatShareAnEdgeOfTheMeshAreNone) {
   EXPECT_EQ(found({{kCube}, {beside}}).bodies.size(), 2u) << "of two objects each has edges of its own";
 }
 
+// A folded sheet of so many squares, from the edge between (0, 0, 0) and (0, 0, 4) on.
+Solid foldedSheet(std::uint32_t squares) {
+  Solid sheet;
+  for (std::uint32_t i = 0; i <= squares; ++i) {
+    const float x = static_cast<float>(i), y = i % 2 == 0 ? 0.0f : 0.5f;
+    sheet.points.insert(sheet.points.end(), {{x, y, 0}, {x, y, 4}});
+    if (i > 0) {
+      sheet.faces.push_back({2 * i - 2, 2 * i - 1, 2 * i + 1, 2 * i});
+    }
+  }
+  return sheet;
+}
+
+TEST(Bodies, ABoxOnAnEdgeOfALargeMeshOfItsObjectIsOne) {
+  // No body has as many faces as the large mesh, so what it shares with the box says nothing of the box.
+  const Solid box = test::block({-2, 0, 0}, {0, 3, 4});
+  const OccluderSet large = found({{foldedSheet(33), box}});
+  EXPECT_EQ(large.occluders.size(), 33u + 6u);
+  ASSERT_EQ(large.bodies.size(), 1u);
+  EXPECT_EQ(shapeOf(large.bodies[0]), (Shape{6, 12, 8}));
+  expectSound(large, large.bodies[0]);
+  EXPECT_TRUE(found({{foldedSheet(32), box}}).bodies.empty()) << "or they share no edge, and it says nothing";
+}
+
 TEST(Bodies, FacesOfABodyAreKeptTogetherHoweverSmall) {
   const Solid slab = test::block({0, 0, 0}, {40, 40, 0.1f});  // sides of 4 square metres, 0.1 % of all
   const Solid small = test::block({100, 0, 0}, {101, 1, 1});

@@ -17,6 +17,7 @@
 #include "sightline/occluders/surface_set.h"
 #include "tests/occluders/triangle_soup.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/solids.h"
 
 namespace sightline {
 namespace {
@@ -108,6 +109,32 @@ Scene sceneOf(const test::Soup& soup) {
   scene.objects.push_back(object);
   scene.object_names.emplace_back("soup");
   return scene;
+}
+
+TEST(FindSurfaces, AClosedShapeIsOnePartHoweverItIsTurned) {
+  // The cosine of two opposite normals may be below -1 by a rounding.
+  constexpr std::size_t kBoxes = 1000;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<> anywhere(-1.0, 1.0);
+  const auto direction = [&] { return Vec3d(anywhere(random), anywhere(random), anywhere(random)); };
+  test::Soup soup;
+  for (std::size_t i = 0; i < kBoxes; ++i) {
+    const Vec3d normal = normalized(direction()), x = normalized(cross(normal, direction()));
+    const test::Solid box = test::placed(test::block({0, 0, 0}, {2, 3, 4}),
+                                         Vec3d(10.0 * static_cast<double>(i), 0.0, 0.0), x, cross(normal, x));
+    for (std::size_t face = 0; face < box.faces.size(); ++face) {
+      const std::vector<Vec3f> corners = box.polygon(face);
+      soup.add(Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2]));
+      soup.add(Vec3d(corners[0]), Vec3d(corners[2]), Vec3d(corners[3]));
+    }
+  }
+  const Scene scene = sceneOf(soup);
+  const SurfaceSet set = findSurfaces(scene.view());
+  EXPECT_EQ(set.triangles.size(), 3 * 12 * kBoxes);
+  EXPECT_EQ(set.parts.size(), kBoxes);
+  for (const SurfacePart& part : set.parts) {
+    EXPECT_EQ(part.edge_count, 0u);
+  }
 }
 
 // A boundary in pieces that have no other point of the lattice of whole numbers: how often each is run
