@@ -558,6 +558,39 @@ TEST(Bake, FusedSetsKeepAnObjectWhoseWiderBoundsShow) {
   EXPECT_TRUE(isKept());
 }
 
+// Two walls across x, each with an edge in the way from the viewers to the last block. Only together they
+// hide it, and only narrowing shows that.
+Scene twoWalls() {
+  return test::sceneOf({test::block({0, -9, -9}, {0.25f, 9, 0.5f}),
+                        test::block({4, -9, -0.5f}, {4.25f, 9, 9}),
+                        test::block({8, -0.5f, -1}, {8.25f, 0.5f, 1})});
+}
+
+TEST(Bake, NarrowsWhateverEndsDivision) {
+  BakeSettings settings{.occlusion = BakeOcclusion::kFused,
+                        .near_distance = 0.1,
+                        .viewers = {{{-6, -0.5, -0.5}, {-5, 0.5, 0.5}}}};
+  struct End {
+    StopReason reason;
+    std::uint32_t max_depth;
+    std::uint64_t triangle_budget;
+  };
+  for (const End& end : {End{StopReason::kMaxDepth, 0, 0}, End{StopReason::kBudgetMet, 2, 1000},
+                         End{StopReason::kNothingGained, 2, 0}}) {
+    settings.max_depth = end.max_depth;
+    settings.triangle_budget = end.triangle_budget;
+    settings.similarity = 1.0;  // no point sees so much less that dividing helps
+    for (const std::uint32_t narrowings : {0u, 1u}) {
+      settings.narrowings = narrowings;
+      const BakedVisibility result = baked(twoWalls(), settings);
+      const VisibilityOctree& octree = result.octree;
+      ASSERT_EQ(octree.leaves.size(), 1u);
+      EXPECT_EQ(octree.reasons[0], static_cast<std::uint8_t>(end.reason));
+      EXPECT_EQ(test::membersOf(result, 0)[2], narrowings == 0) << static_cast<int>(end.reason);
+    }
+  }
+}
+
 TEST(Bake, FusedSetsAreTheSameWhoeverBakesTheParts) {
   const Scene scene = randomScene(3);
   const BakeSettings settings{

@@ -79,15 +79,15 @@ double magnitudeOf(const CellBox& root, const BoxTree& boxes) {
   return magnitude;
 }
 
-// A box around the cell and all nodes of the tree, rounded outwards.
-Box frameOf(const CellBox& cell, const BoxTree& tree) {
+// A box around the cell and all boxes, rounded outwards.
+Box frameOf(const CellBox& cell, std::span<const Box> boxes) {
   Box frame;
   for (const Vec3d& corner : {cell.min, cell.max}) {
     frame.extend(Vec3f(corner));
   }
   frame = widened(frame, 0x1p-20 * maxComponent(max(abs(cell.min), abs(cell.max))));
-  if (!tree.nodes.empty()) {
-    frame.extend(tree.nodes[0].bounds);
+  for (const Box& box : boxes) {
+    frame.extend(box);
   }
   return frame;
 }
@@ -173,7 +173,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       position_of(scene.objects.size()),
       occluders(set),
       panels(s.occlusion == BakeOcclusion::kFused ? panelsOf(scene, doors, {}, s, parallel_for) : Panels{}),
-      frame(frameOf(root, panels.tree)),
+      frame(frameOf(root, panels.bounds)),
       object_boxes(
           s.occlusion == BakeOcclusion::kFused
               ? findObjectBoxes(scene, {.max_boxes = s.object_boxes, .margin = s.box_margin}, parallel_for)

@@ -18,7 +18,10 @@ constexpr double kNearInEdges = 0.5;
 
 // Units of CellBaker::work. By single convex occluders, an object takes one, from a region or from a point.
 constexpr std::uint64_t kSurfaceWork = 100;  // to ask whether surfaces hide a box
-constexpr std::uint64_t kLineWork = 5;       // to ask whether a line of sight is clear
+// The same where surfaces are narrowed or divided. The work of a cell that is divided, which they are not in,
+// stands for that of the cells below it.
+constexpr std::uint64_t kThoroughWork = 400;
+constexpr std::uint64_t kLineWork = 5;  // to ask whether a line of sight is clear
 
 std::uint64_t countOf(std::span<const ObjectRun> runs) {
   std::uint64_t count = 0;
@@ -123,9 +126,16 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, con
   chooseOccluders(cell, search_distance, cell.level);
   removeHidden(box, sets);
   if (fused()) {
-    removeFused(box, sets);
+    removeFused(box, scene_.mayDivide(cell) ? RegionEffort{} : effortOf(scene_.settings), sets);
   }
   return sets;
+}
+
+void CellBaker::lookCloser(const OctreeCell& cell, CellSets& sets) {
+  if (fused() && isThorough(scene_.settings)) {
+    startCell(cell);
+    removeFused(scene_.regionOf(cell), effortOf(scene_.settings), sets);
+  }
 }
 
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
@@ -154,8 +164,8 @@ void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   }
 }
 
-void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
-  removeFusedFrom(box, WitnessPart::kWhole, sets.whole);
+void CellBaker::removeFused(const CellBox& box, const RegionEffort& effort, CellSets& sets) {
+  removeFusedFrom(box, WitnessPart::kWhole, effort, sets.whole);
   if (!sets.plane) {
     return;
   }
@@ -168,25 +178,28 @@ void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
       return;
     }
     if (const CellBox around = boundsOf(corners); around.extent() != box.extent()) {
-      removeFusedFrom(around, part, side);
+      removeFusedFrom(around, part, effort, side);
     }
   };
   removeFrom(sides.front, WitnessPart::kFront, sets.front);
   removeFrom(sides.back, WitnessPart::kBack, sets.back);
 }
 
-void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen) {
+void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, const RegionEffort& effort,
+                                Runs& seen) {
   part_ = part;
   if (seen.empty()) {
     return;
   }
   const std::array<Vec3d, 2> ends{region.min, region.max};
-  Answer answer{.kind = AnswerKind::kFused, .question = questionOf(ends, {})};
+  const std::array<double, 2> numbers{static_cast<double>(effort.narrowings),
+                                      static_cast<double>(effort.divisions)};
+  Answer answer{.kind = AnswerKind::kFused, .question = questionOf(ends, numbers)};
   recall_.compareNodes(recall_.find(answer));
   hidden_nodes_.clear();
   followed_.clear();
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
-  removeFusedBelow(0, region);
+  removeFusedBelow(0, region, effort);
   hidden_.complement(seen);
   answer.seen = seen;
   answer.hidden_nodes = hidden_nodes_;
@@ -194,35 +207,35 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
   recall_.keep(std::move(answer));
 }
 
-bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
+bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region, const RegionEffort& effort) {
   ++questions_;
-  work_ += kSurfaceWork;
+  work_ += isThorough(scene_.settings) ? kThoroughWork : kSurfaceWork;
   if (const std::optional<CellRecall::NodeAnswer> before = recall_.node(number, region)) {
     followed_.push_back(before->followed);
     return before->hidden;
   }
   ++asked_;
   surfaces_.questions().takeFollowed();
-  const bool hidden = surfaces_.hides(number, region);
+  const bool hidden = surfaces_.hides(number, region, effort);
   followed_.push_back(coarse(surfaces_.questions().takeFollowed(), scene_.frame));
   return hidden;
 }
 
-void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
+void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region, const RegionEffort& effort) {
   const BoxTreeView boxes = scene_.boxes.view();
   const BoxNode& node = boxes.nodes[number];
   const ObjectRun objects{node.first_object, node.first_object + node.object_count};
   if (hidden_.containsAll(objects)) {
     return;
   }
-  if (surfacesHide(number, region)) {
+  if (surfacesHide(number, region, effort)) {
     hidden_nodes_.push_back(number);
     recordSurfaces(objects);
     hidden_.add(std::span(&objects, 1));
     return;
   }
   for (std::uint32_t child = number + 1; child < node.end; child = boxes.nodes[child].end) {
-    removeFusedBelow(child, region);
+    removeFusedBelow(child, region, effort);
   }
 }
 

@@ -26,9 +26,12 @@ class CellBaker {
   explicit CellBaker(const BakeScene& scene, const Recall* recall = nullptr);
 
   // Sets of the cell. Convex occluders count that intersect the cell grown by search_distance metres on all
-  // sides, surfaces wherever they are. seen: from anywhere in the parent, of which the sets are a part; empty
-  // if not known.
+  // sides, surfaces wherever they are; these are narrowed and divided only if the cell cannot be divided.
+  // seen: from anywhere in the parent, of which the sets are a part; empty if not known.
   CellSets seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen);
+  // Removes from the sets of a cell that could be divided, but is not, what surfaces hide where they are
+  // narrowed and divided.
+  void lookCloser(const OctreeCell& cell, CellSets& sets);
   // Updates the sets, computed with the smaller distance `searched`, to the greater search_distance.
   void lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets);
   // True if cells within this one are likely to see clearly less: if a corner or the centre of the cell, or a
@@ -80,11 +83,11 @@ class CellBaker {
   // The same by samples, which are kept.
   void hideBySamples(std::span<const Vec3d> corners);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
-  void removeFused(const CellBox& box, CellSets& sets);
-  void removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen);
-  void removeFusedBelow(std::uint32_t node, const CellBox& region);
+  void removeFused(const CellBox& box, const RegionEffort& effort, CellSets& sets);
+  void removeFusedFrom(const CellBox& region, WitnessPart part, const RegionEffort& effort, Runs& seen);
+  void removeFusedBelow(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
-  bool surfacesHide(std::uint32_t node, const CellBox& region);
+  bool surfacesHide(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
   // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
   // them.
   double shareSeenFrom(const Vec3d& point, const Runs& seen);

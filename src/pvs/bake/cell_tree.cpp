@@ -36,11 +36,17 @@ CellOutcome decideOpen(CellBaker& baker, const BakeScene& scene, const CellTask&
   }
   const ViewerBounds viewers = scene.viewersIn(task.cell);
   CellSets sets = baker.seenFrom(task.cell, distance, task.seen);
+  const auto leaf = [&](StopReason reason) {
+    if (!deepest) {
+      baker.lookCloser(task.cell, sets);
+    }
+    return CellOutcome{.leaf = leafOf(task.cell, viewers, std::move(sets), reason),
+                       .search_distance = distance};
+  };
   for (;;) {
     const std::uint64_t triangles = trianglesOf(scene, sets);
     if (triangles <= settings.triangle_budget) {
-      return {.leaf = leafOf(task.cell, viewers, std::move(sets), StopReason::kBudgetMet),
-              .search_distance = distance};
+      return leaf(StopReason::kBudgetMet);
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
@@ -55,8 +61,7 @@ CellOutcome decideOpen(CellBaker& baker, const BakeScene& scene, const CellTask&
       gained = less > 0.0 && less >= settings.min_gain * static_cast<double>(triangles);
     }
     if (!gained) {
-      const StopReason reason = deepest ? StopReason::kMaxDepth : StopReason::kNothingGained;
-      return {.leaf = leafOf(task.cell, viewers, std::move(sets), reason), .search_distance = distance};
+      return leaf(deepest ? StopReason::kMaxDepth : StopReason::kNothingGained);
     }
   }
 }

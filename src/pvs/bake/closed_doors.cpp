@@ -132,7 +132,7 @@ void ClosedDoors::hideBelow(std::uint32_t number, std::uint32_t group, const Cel
     if (std::all_of(seen_doors_.begin(), seen_doors_.end(), misses)) {
       return;  // the doors hide nothing of the node that is seen while they are open
     }
-    if (surfaces_[group].hides(number, region)) {
+    if (surfaces_[group].hides(number, region, effortOf(scene_.settings))) {
       hidden_.add(std::span(&objects, 1));
       return;
     }

@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include "sightline/geometry/tolerance.h"
-#include "src/pvs/bake/box_search.h"
 #include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
@@ -110,7 +109,7 @@ Vec3d FusedOcclusion::startOf(const CellBox& region) {
 }
 
 FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTarget& target,
-                                           double near_distance) {
+                                           double near_distance, bool look_for_lines) {
   const double widening = kWidening * magnitude_;
   const Vec3d by{widening, widening, widening};
   region_ = region;
@@ -129,7 +128,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   if (answer != Answer::kUndecided || spoilers_.empty() || most_repeats_ == 0) {
     return answer;
   }
-  if (seesAnyEnd()) {
+  if (look_for_lines && seesAnyEnd()) {
     return Answer::kClear;
   }
   for (std::uint32_t repeat = 0; repeat < most_repeats_ && answer != Answer::kHidden && !spoilers_.empty();
@@ -211,39 +210,66 @@ FusedOcclusion::Answer FusedOcclusion::askWithout() {
 // Whether the line of sight that was crossed last shows that the target is hidden. Sets proof_ if it does.
 bool FusedOcclusion::hiddenBehind(const Vec3d& from, const Vec3d& to) {
   for (Component& component : components_) {
-    component.crossings = 0;
-    component.in_doubt = false;
+    component.counted = false;
   }
-  // What no front was crossed of cannot hide. But backs count in the components of fronts.
+  const auto proves = [&](std::uint32_t number) {
+    if (components_[number].counted || !isCrossedOften(number, to)) {
+      return false;
+    }
+    // A component is gathered from a panel that a line crosses.
+    proof_ = {from, to, panels_.panels[members_[components_[number].first]].object};
+    return true;
+  };
+  // What no front was crossed of cannot hide. Those of earlier lines are counted at the end.
   for (const Crossing& crossing : crossings_) {
-    if (crossing.front) {
-      addToComponent(crossing);
+    if (crossing.front && proves(componentOf(crossing.panel))) {
+      return true;
     }
   }
-  for (const Crossing& crossing : crossings_) {
-    if (!crossing.front && places_[crossing.panel].question == question_) {
-      addToComponent(crossing);
+  for (std::uint32_t number = 0; number < components_.size(); ++number) {
+    if (proves(number)) {
+      return true;
     }
   }
-  const auto hiding = std::find_if(components_.begin(), components_.end(), [&](const Component& component) {
-    return component.closed && !component.in_doubt && component.crossings > 0 &&
-           component.crossings > mostBehind(component, to);
+  return false;
+}
+
+// Counts how often the line of sight that was crossed last crosses the component. True if no end of a line in
+// the target can make up for that: the component hides the target.
+bool FusedOcclusion::isCrossedOften(std::uint32_t number, const Vec3d& end) {
+  Component& component = components_[number];
+  component.counted = true;
+  component.crossings = 0;
+  component.in_doubt = false;
+  for (const Crossing& crossing : crossings_) {
+    const Place& place = places_[crossing.panel];
+    if (place.question == question_ && place.component == number) {
+      component.crossings += crossing.sum;
+      component.in_doubt = component.in_doubt || crossing.in_doubt;
+    }
+  }
+  return component.closed && !component.in_doubt && component.crossings > 0 &&
+         component.crossings > mostBehind(component, end);
+}
+
+template <typename Test>
+bool FusedOcclusion::anyPanelOn(const Vec3d& from, const Vec3d& to, const Test& test) {
+  const Cone line(from, {to, to}, error_, magnitude_);
+  panels_.tree.find(std::span(&line, 1), panels_.panels.size(), found_);
+  const SegmentTest segment(from, to, error_);
+  return std::ranges::any_of(found_, [&](std::uint32_t place) {
+    const std::uint32_t panel = panels_.tree.boxes().number[place];
+    return !segment.misses(panels_.bounds[panel]) && test(panel);
   });
-  if (hiding == components_.end()) {
-    return false;
-  }
-  // A component is gathered from a panel that the line crosses.
-  proof_ = {from, to, panels_.panels[members_[hiding->first]].object};
-  return true;
 }
 
 // Sets crossings_ to all those of a line of sight, in the order of their panels' ranks.
 void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to) {
   crossings_.clear();
-  const SegmentTest segment(from, to, error_);
-  forEachLeaf(
-      panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
-      [&](const BoxNode& leaf) { crossPanel(panelOf(leaf), from, to); });
+  anyPanelOn(from, to, [&](std::uint32_t panel) {
+    crossPanel(panel, from, to);
+    return false;
+  });
   std::sort(crossings_.begin(), crossings_.end(),
             [this](const Crossing& a, const Crossing& b) { return panels_.before(a.panel, b.panel); });
 }
@@ -264,18 +290,16 @@ bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to) {
     std::rotate(blockers_.begin(), known, known + 1);
     return false;
   }
-  return !anyLeaf(
-      panels_.tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
-      [&](const BoxNode& leaf) {
-        if (!blocks(panelOf(leaf))) {
-          return false;
-        }
-        if (blockers_.size() == kMostBlockers) {
-          blockers_.pop_back();
-        }
-        blockers_.insert(blockers_.begin(), panelOf(leaf));
-        return true;
-      });
+  return !anyPanelOn(from, to, [&](std::uint32_t panel) {
+    if (!blocks(panel)) {
+      return false;
+    }
+    if (blockers_.size() == kMostBlockers) {
+      blockers_.pop_back();
+    }
+    blockers_.insert(blockers_.begin(), panel);
+    return true;
+  });
 }
 
 void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const Vec3d& to) {
@@ -316,21 +340,19 @@ bool FusedOcclusion::clear() const {
   return std::none_of(crossings_.begin(), crossings_.end(), [](const Crossing& c) { return c.blocks(); });
 }
 
-// Adds the crossing to the component of its panel, which is gathered if it is not known.
-void FusedOcclusion::addToComponent(const Crossing& crossing) {
-  Place& place = places_[crossing.panel];
+// The number of the panel's component, which is gathered if it is not known.
+std::uint32_t FusedOcclusion::componentOf(std::uint32_t panel) {
+  Place& place = places_[panel];
   if (place.question != question_) {
     const auto number = static_cast<std::uint32_t>(components_.size());
     const auto first = static_cast<std::uint32_t>(members_.size());
     components_.push_back({.first = first});
     place = {question_, number};
-    members_.push_back(crossing.panel);
+    members_.push_back(panel);
     components_[number].closed = gather(number);
     components_[number].count = static_cast<std::uint32_t>(members_.size()) - first;
   }
-  Component& component = components_[place.component];
-  component.crossings += crossing.sum;
-  component.in_doubt = component.in_doubt || crossing.in_doubt;
+  return place.component;
 }
 
 // Adds all panels that are joined with the component's first one within the shaft. False as soon as it is not

@@ -33,8 +33,10 @@ class FusedOcclusion {
   static constexpr std::uint32_t kMostRepeats = 4;
   static constexpr std::uint32_t kEndCount = 9;  // of lines of sight that ask() tries at most
 
-  // near_distance: what is closer to the region, in metres, hides nothing.
-  Answer ask(const CellBox& region, const FusedTarget& target, double near_distance);
+  // near_distance: what is closer to the region, in metres, hides nothing. look_for_lines: whether more lines
+  // of sight are tried before the question is asked again, which spares that where one of them is clear.
+  Answer ask(const CellBox& region, const FusedTarget& target, double near_distance,
+             bool look_for_lines = true);
   // The line of sight that showed it, and the object of a sheet that the line crosses. Of the last question
   // that was answered kHidden.
   struct Proof {
@@ -66,6 +68,7 @@ class FusedOcclusion {
   struct Component {
     bool closed = false;  // no part of its boundary is in the shaft, and nothing of it too near
     std::uint32_t first = 0, count = 0;  // into members_
+    bool counted = false;                // what follows is known
     std::int32_t crossings = 0;          // of the line of sight
     bool in_doubt = false;
   };
@@ -82,12 +85,16 @@ class FusedOcclusion {
   void addSpoiler(std::uint32_t panel);
   void findCrossingsTo(std::uint32_t end);
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
+  bool isCrossedOften(std::uint32_t component, const Vec3d& end);
   void findCrossings(const Vec3d& from, const Vec3d& to);
   bool isFree(const Vec3d& from, const Vec3d& to);
-  std::uint32_t panelOf(const BoxNode& leaf) const { return panels_.tree.objects[leaf.first_object].value; }
+  // True if test(panel) holds for one of the panels of which the line of sight meets the bounds. Asks them in
+  // any order, and stops at the first.
+  template <typename Test>
+  bool anyPanelOn(const Vec3d& from, const Vec3d& to, const Test& test);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
   bool clear() const;
-  void addToComponent(const Crossing& crossing);
+  std::uint32_t componentOf(std::uint32_t panel);
   bool gather(std::uint32_t component);
   bool misses(const PanelEdge& edge);
   std::uint32_t sidesBeyond(std::uint32_t vertex);
@@ -114,6 +121,7 @@ class FusedOcclusion {
   // By end: the crossings of a line of sight, with all that are not left out when it is first followed.
   std::array<std::vector<Crossing>, kEndCount> traced_;
   std::uint32_t traced_count_ = 0;
+  std::vector<std::uint32_t> found_;     // places in the tree of panels
   std::vector<std::uint32_t> blockers_;  // panels that blocked lines of sight, the last one first
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component

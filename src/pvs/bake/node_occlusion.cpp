@@ -9,15 +9,15 @@ NodeOcclusion::NodeOcclusion(const BakeScene& scene, const Panels& panels)
       questions_(panels, scene.settings.near_distance, scene.magnitude,
                  isThorough(scene.settings) ? FusedOcclusion::kMostRepeats : 0) {}
 
-bool NodeOcclusion::hides(std::uint32_t number, const CellBox& region) {
+bool NodeOcclusion::hides(std::uint32_t number, const CellBox& region, const RegionEffort& effort) {
   const BoxTreeView boxes = scene_.boxes.view();
   const BoxNode& node = boxes.nodes[number];
-  return boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
+  return boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object], effort)
                             : hidesBox(region, node.bounds, kNoObject, {});
 }
 
-bool NodeOcclusion::hidesObject(const CellBox& region, const Box& bounds, ObjectId object) {
-  const RegionEffort effort{scene_.settings.narrowings, scene_.settings.divisions};
+bool NodeOcclusion::hidesObject(const CellBox& region, const Box& bounds, ObjectId object,
+                                const RegionEffort& effort) {
   const std::span<const Box> several = scene_.object_boxes.of(object);
   if (several.empty() || !areBoxesOf(several, bounds)) {
     return hidesBox(region, bounds, object.value, effort);

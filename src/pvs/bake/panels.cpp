@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -303,7 +304,9 @@ class PanelMaker {
       const double reach = maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
       panels_.bounds.push_back(widened(box, panels_.slack + 0x1p-24 * reach));
     }
-    panels_.tree = buildBoxTree(panels_.bounds, {});
+    std::vector<std::uint32_t> numbers(panels_.panels.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    panels_.tree = ConeTree(panels_.bounds, numbers);
   }
 
   Panels panels_;

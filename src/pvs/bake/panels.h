@@ -18,8 +18,8 @@
 
 #include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
-#include "sightline/hierarchy/box_tree.h"
 #include "sightline/scene/scene.h"
+#include "src/pvs/bake/cone_search.h"
 
 namespace sightline::pvs {
 
@@ -70,7 +70,7 @@ struct Panels {
   LargeVector<SheetAround> around{};
   LargeVector<Panel> panels{};
   LargeVector<Box> bounds{};       // by panel, also of what was not rounded
-  BoxTree tree{};                  // its objects are numbers of panels
+  ConeTree tree{};                 // of the bounds, with the numbers of the panels
   std::vector<PanelRank> ranks{};  // by panel
   double slack = 0.0;
 

@@ -1,7 +1,9 @@
 #include "src/pvs/bake/region_occlusion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -14,7 +16,11 @@ namespace {
 // A place on a line is computed from two others on it. This bounds its error in metres, for each metre of
 // their coordinates and each time that it is as far away from them as they are from each other.
 constexpr double kPlaceRounding = 0x1p-44;
-constexpr int kMaxHalves = 16;  // so many are cut off one end of a part in a row, at most
+constexpr int kMaxHalves = 2;  // so many are cut off one end of a part in a row, at most
+// Random lines of sight that are tried before narrowing, and before each division of a passage.
+constexpr int kLinesBefore = 32, kLinesOfPassage = 16;
+// A window is of little use across an axis along which the gap is shorter than this part of the longest one.
+constexpr double kLeastGap = 0.25;
 
 struct Interval {
   double low, high;
@@ -83,12 +89,18 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   if (answer != Answer::kUndecided) {
     return answer;
   }
-  narrowed_or_divided_ = narrowed_or_divided_ || effort.narrowings > 0 || effort.divisions > 0;
-  if (effort.narrowings > 0) {
-    decided_by_ = WitnessKind::kNarrowed;
-    return decideThroughWindows(region, target.box, target.object, effort);
+  if (effort.narrowings == 0 && effort.divisions == 0) {
+    return answer;
   }
-  return effort.divisions > 0 ? decideHalves(region, target, effort) : answer;
+  narrowed_or_divided_ = true;
+  if (hasClearLine(region, target, kLinesBefore)) {
+    return Answer::kClear;
+  }
+  if (effort.narrowings == 0) {
+    return decideHalves(region, target, effort);
+  }
+  decided_by_ = WitnessKind::kNarrowed;
+  return decideThroughWindows(region, target.box, target.object, effort);
 }
 
 RegionOcclusion::Answer RegionOcclusion::decideHalves(CellBox region, FusedTarget target,
@@ -112,9 +124,13 @@ RegionOcclusion::Answer RegionOcclusion::decideHalves(CellBox region, FusedTarge
 RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, CellBox target,
                                                               std::uint32_t object,
                                                               const RegionEffort& effort) {
+  std::array<int, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(axes, std::ranges::greater(), [&region, &target](int axis) {
+    return std::max(target.min[axis] - region.max[axis], region.min[axis] - target.max[axis]);
+  });
   std::optional<Passage> longest;
   double length = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (const int axis : axes) {
     const bool before = region.max[axis] < target.min[axis];
     if (!before && !(target.max[axis] < region.min[axis])) {
       continue;
@@ -123,13 +139,15 @@ RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, Ce
         before ? Interval{region.max[axis], target.min[axis]} : Interval{target.max[axis], region.min[axis]};
     const double middle = 0.5 * (gap.low + gap.high);
     // No near plane clips what hides the target from the window.
-    if (!(0.5 * (gap.high - gap.low) > near_distance_ + fused_.nearMargin())) {
+    if (!(0.5 * (gap.high - gap.low) > near_distance_ + fused_.nearMargin()) ||
+        gap.high - gap.low < kLeastGap * length) {
       continue;
     }
     const double far = fused_.magnitude();
     Passage passage{region, {{-far, -far, -far}, {far, far, far}}, target, axis, object};
     passage.window.min[axis] = passage.window.max[axis] = middle;
-    const Answer answer = narrowPassage(passage, effort.narrowings);
+    bool cut = false;
+    const Answer answer = narrowPassage(passage, effort.narrowings, cut);
     if (answer != Answer::kUndecided) {
       return answer;
     }
@@ -155,7 +173,7 @@ RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, Ce
 }
 
 RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, const RegionEffort& effort) {
-  if (hasClearLine(passage)) {
+  if (hasClearLine(passage.region, {passage.target, passage.object}, kLinesOfPassage)) {
     return Answer::kClear;
   }
   if (effort.divisions == 0) {
@@ -176,8 +194,9 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
     if (!tighten(half)) {
       continue;
     }
-    Answer answer = narrowPassage(half, effort.narrowings);
-    if (answer == Answer::kUndecided) {
+    bool cut = false;
+    Answer answer = narrowPassage(half, effort.narrowings, cut);
+    if (answer == Answer::kUndecided && cut) {
       answer = dividePassage(half, {effort.narrowings, effort.divisions - 1});
     }
     if (answer != Answer::kHidden) {
@@ -187,8 +206,7 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
   return Answer::kHidden;
 }
 
-bool RegionOcclusion::hasClearLine(const Passage& passage) {
-  constexpr int kLines = 16;  // that are tried
+bool RegionOcclusion::hasClearLine(const CellBox& region, const FusedTarget& target, int lines) {
   std::uint32_t random = 1;
   const auto share = [&] {
     random = random * 1664525u + 1013904223u;
@@ -201,43 +219,49 @@ bool RegionOcclusion::hasClearLine(const Passage& passage) {
     }
     return point;
   };
-  for (int line = 0; line < kLines; ++line) {
-    const Vec3d from = pointIn(passage.region), to = pointIn(passage.target);
-    if (fused_.isClear(from, to, passage.object)) {
+  for (int line = 0; line < lines; ++line) {
+    const Vec3d from = pointIn(region), to = pointIn(target.box);
+    if (fused_.isClear(from, to, target.object)) {
       return true;
     }
   }
   return false;
 }
 
-RegionOcclusion::Answer RegionOcclusion::narrowPassage(Passage& passage, std::uint32_t times) {
+RegionOcclusion::Answer RegionOcclusion::narrowPassage(Passage& passage, std::uint32_t times, bool& cut) {
   if (!tighten(passage)) {
     return Answer::kHidden;
   }
-  bool cut = true;
-  for (std::uint32_t time = 0; time < times && cut; ++time) {
-    cut = false;
+  bool cut_now = true;
+  for (std::uint32_t time = 0; time < times && cut_now; ++time) {
+    cut_now = false;
     for (const Part part : {Part::kTarget, Part::kWindow, Part::kRegion}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const bool high : {false, true}) {
-          if (part == Part::kWindow && axis == passage.axis) {
-            continue;
-          }
-          const Answer answer = cutOff(passage, part, axis, high, cut);
-          if (answer != Answer::kUndecided) {
-            return answer;
-          }
-        }
+      const Answer answer = narrowPart(passage, part, cut_now);
+      if (answer != Answer::kUndecided) {
+        return answer;
       }
     }
-    if (cut) {
-      const Answer answer = fused_.ask(passage.region, {passage.target, passage.object}, near_distance_);
+    cut = cut || cut_now;
+  }
+  return Answer::kUndecided;
+}
+
+RegionOcclusion::Answer RegionOcclusion::narrowPart(Passage& passage, Part part, bool& cut) {
+  bool smaller = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool high : {false, true}) {
+      if (part == Part::kWindow && axis == passage.axis) {
+        continue;
+      }
+      const Answer answer = cutOff(passage, part, axis, high, smaller);
       if (answer != Answer::kUndecided) {
         return answer;
       }
     }
   }
-  return Answer::kUndecided;
+  cut = cut || smaller;
+  return smaller ? askOnce(passage.region, passage.target, passage.object, near_distance_)
+                 : Answer::kUndecided;
 }
 
 RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int axis, bool high, bool& cut) {
@@ -267,15 +291,14 @@ RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int
 RegionOcclusion::Answer RegionOcclusion::answerThrough(const Passage& passage, Part part,
                                                        const CellBox& piece) {
   if (part == Part::kTarget) {
-    return fused_.ask(passage.region, {piece, passage.object}, near_distance_);
+    return askOnce(passage.region, piece, passage.object, near_distance_);
   }
   if (part == Part::kRegion) {
-    return fused_.ask(piece, {passage.target, passage.object}, near_distance_);
+    return askOnce(piece, passage.target, passage.object, near_distance_);
   }
   // Those that are clear only as far as the window, or only from there on, say nothing.
-  const bool hidden =
-      fused_.ask(passage.region, {piece, passage.object}, near_distance_) == Answer::kHidden ||
-      fused_.ask(piece, {passage.target, passage.object}, 0.0) == Answer::kHidden;
+  const bool hidden = askOnce(passage.region, piece, passage.object, near_distance_) == Answer::kHidden ||
+                      askOnce(piece, passage.target, passage.object, 0.0) == Answer::kHidden;
   return hidden ? Answer::kHidden : Answer::kUndecided;
 }
 

@@ -55,18 +55,27 @@ class RegionOcclusion {
   // Halves the region or the target.
   Answer decideHalves(CellBox region, FusedTarget target, const RegionEffort& effort);
   // Narrows the region and the target to the ends of the lines through a window halfway between them, for
-  // each axis along which they are far enough apart. Then divides the longest of these passages.
+  // each axis along which they are far enough apart, the one with the widest gap first. Then divides the
+  // longest of these passages.
   Answer decideThroughWindows(CellBox region, CellBox target, std::uint32_t object,
                               const RegionEffort& effort);
   // Halves the widest part of a passage that has been narrowed, and narrows both passages that this gives.
-  // All lines of each have to be blocked.
+  // All lines of each have to be blocked. A half of which narrowing cuts nothing off is given up: dividing it
+  // again costs as much as before and rarely decides.
   Answer dividePassage(const Passage& passage, const RegionEffort& effort);
-  // True if one of some random lines from the passage's region to its target is clear.
-  bool hasClearLine(const Passage& passage);
-  // Narrows all boxes of a passage, so many times at the most.
-  Answer narrowPassage(Passage& passage, std::uint32_t times);
+  // True if one of so many random lines from the region to the target is clear.
+  bool hasClearLine(const CellBox& region, const FusedTarget& target, int lines);
+  // Narrows all boxes of a passage, so many times at the most. cut: set to true if one gets smaller.
+  Answer narrowPassage(Passage& passage, std::uint32_t times, bool& cut);
+  // Cuts off what can be cut off all ends of a part, and asks about the whole passage again if that is
+  // something. cut: set to true if it is.
+  Answer narrowPart(Passage& passage, Part part, bool& cut);
   // Cuts off one end of a part, half of it at a time. cut: set to true if it does.
   Answer cutOff(Passage& passage, Part part, int axis, bool high, bool& cut);
+  // Asks about what is known to have no clear line, or hardly one.
+  Answer askOnce(const CellBox& region, const CellBox& box, std::uint32_t object, double near_distance) {
+    return fused_.ask(region, {box, object}, near_distance, false);
+  }
   // Whether the lines of the passage through a piece of one part are blocked. kClear means that some line of
   // sight from the region to the target is clear.
   Answer answerThrough(const Passage& passage, Part part, const CellBox& piece);
