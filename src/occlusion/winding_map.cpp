@@ -86,8 +86,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void WindingMap::resize(const DepthTarget& target) {
+void WindingMap::begin(const DepthTarget& target, const NeedMap* needs) {
   target_ = target;
+  needs_ = needs;
   const auto wholes = [](std::uint32_t pixels, std::int32_t size) {
     return (static_cast<std::int32_t>(pixels) + size - 1) / size;
   };
@@ -173,7 +174,8 @@ WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
                          .stale = stale_.get(),
                          .columns = columns_,
                          .range = tiles,
-                         .target = target_};
+                         .target = target_,
+                         .needs = needs_};
   if (group.flat) {
     return resolvePlane(cover, group.depths[0].depth);
   }

@@ -12,6 +12,7 @@
 #include "src/occlusion/boundary_edge.h"
 #include "src/occlusion/boundary_runs.h"
 #include "src/occlusion/depth_target.h"
+#include "src/occlusion/need_map.h"
 #include "src/occlusion/winding_resolve.h"
 #include "src/occlusion/winding_tiles.h"
 
@@ -27,13 +28,19 @@ struct WindingGroup {
 
 class WindingMap {
  public:
-  void resize(const DepthTarget& target);
+  // needs: what counts as a gain, or null for all that becomes nearer; it must outlive the view.
+  void begin(const DepthTarget& target, const NeedMap* needs = nullptr);
   EdgeBuffer buffer() const {
     return {static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)};
   }
 
   // Whether all of a rectangle of the target is nearer than this reciprocal depth.
   bool hides(const PixelRectangle& rectangle, float nearest);
+  // Whether a surface in a rectangle of the target, nowhere nearer than this reciprocal depth, may gain
+  // something.
+  bool wants(const PixelRectangle& rectangle, float nearest) {
+    return needs_ != nullptr ? needs_->needs(target_, rectangle, nearest) : !hides(rectangle, nearest);
+  }
 
   // Draws groups one after the other: covered pixels get the group's depth where that is nearer. Different
   // rows of tiles may be drawn by different threads; the result does not depend on them. edges: those that
@@ -55,6 +62,7 @@ class WindingMap {
                        std::int32_t first_row, std::int32_t last_row);
 
   DepthTarget target_;
+  const NeedMap* needs_ = nullptr;
   std::int32_t columns_ = 0, rows_ = 0;  // of tiles
   std::vector<WindingTile> tiles_;       // all zero between groups
   std::vector<TileExtent> extents_;      // by row of tiles

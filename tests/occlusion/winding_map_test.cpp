@@ -59,7 +59,7 @@ void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBo
 // What one closed polygon covers in a map.
 class PolygonCover {
  public:
-  PolygonCover() { map_.resize({values_.data(), kMapWidth, kMapHeight, kMapStride}); }
+  PolygonCover() { map_.begin({values_.data(), kMapWidth, kMapHeight, kMapStride}); }
 
   const std::vector<float>& of(std::span<const GridPoint> polygon) {
     std::fill(values_.begin(), values_.end(), kNoDepth);
@@ -159,7 +159,7 @@ class SmallMap {
 
   void clear() {
     std::fill(values_.begin(), values_.end(), kNoDepth);
-    map_.resize(target_);
+    map_.begin(target_);
   }
   // Draws polygons as one group.
   void draw(std::span<const std::vector<GridPoint>> polygons, std::int32_t value, float depth) {
