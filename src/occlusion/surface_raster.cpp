@@ -81,8 +81,8 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
     if (!withinBudget()) {
       break;
     }
-    if (map_.wants(part.rectangle, part.nearest)) {
-      addPart(part);
+    if (const std::uint32_t pixels = map_.wanted(part.rectangle, part.nearest); pixels > 0) {
+      addPart(part, pixels);
       if (waiting_work_ > kFirstRound + work_ / 2) {
         drawGroups();
       }
@@ -156,9 +156,9 @@ void SurfaceRaster::listUseful() {
   view_.listParts(useful_parts_);
 }
 
-// Whether a surface is worth drawing at all.
-bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) const {
-  return rectangle.area() >= drawing_.pixels_per_edge * edges;
+// Whether a surface is worth drawing at all. pixels: that may become nearer.
+bool SurfaceRaster::pays(std::uint32_t pixels, std::uint32_t edges) const {
+  return pixels >= drawing_.pixels_per_edge * edges;
 }
 
 // What is known of a patch is found again only when the eye has moved. In an orthographic view it depends on
@@ -175,13 +175,13 @@ const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
 }
 
 // Adds the large patches of a part, each alone, and all of them together.
-void SurfaceRaster::addPart(const PartImage& image) {
+void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   const SurfacePart& part = set_->parts[image.part];
   part_ = image.part;
   part_distance_ = length(center(set_->part_bounds[image.part]) - eye_);
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
-  const bool together = part.patch_count + adjoining.size() > 1 && pays(image.rectangle, part.edge_count) &&
+  const bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
                         !leavesOut(part_rests_[image.part]);
   listPatches(part, together);
   const std::size_t first_cluster = view_.clusters().size();
@@ -190,7 +190,8 @@ void SurfaceRaster::addPart(const PartImage& image) {
   patches_.clear();
   for (PatchImage& patch : shown_) {
     const SurfacePatch& source = set_->patches[patch.patch];
-    if (!map_.wants(patch.rectangle, patch.nearest)) {
+    const std::uint32_t of_patch = map_.wanted(patch.rectangle, patch.nearest);
+    if (of_patch == 0) {
       continue;
     }
     if (patch.sign != 0) {
@@ -205,7 +206,7 @@ void SurfaceRaster::addPart(const PartImage& image) {
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
     if (!leavesOut(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
-        pays(patch.rectangle, source.edge_count) && withinBudget()) {
+        pays(of_patch, source.edge_count) && withinBudget()) {
       addPatch(patch, patch_rests_[patch.patch]);
     }
   }

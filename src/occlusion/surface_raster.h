@@ -69,10 +69,10 @@ class SurfaceRaster {
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
   bool rests(const Rest& rest) const;
   bool leavesOut(const Rest& rest) const;
-  bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
+  bool pays(std::uint32_t pixels, std::uint32_t edges) const;
   void listUseful();
   const Facing& facingOf(std::uint32_t patch);
-  void addPart(const PartImage& part);
+  void addPart(const PartImage& part, std::uint32_t pixels);
   void listPatches(const SurfacePart& part, bool together);
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,

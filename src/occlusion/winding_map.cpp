@@ -86,7 +86,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void WindingMap::begin(const DepthTarget& target, const NeedMap* needs) {
+void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
   target_ = target;
   needs_ = needs;
   const auto wholes = [](std::uint32_t pixels, std::int32_t size) {
@@ -105,7 +105,10 @@ void WindingMap::begin(const DepthTarget& target, const NeedMap* needs) {
     far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
   }
   least_.assign(tiles, -kInfinity);
-  std::fill_n(stale_.get(), tiles, true);
+  std::fill_n(stale_.get(), tiles, needs_ == nullptr);
+  if (needs_ != nullptr) {
+    needs_->look(target_, {0, 0, buffer().width, buffer().height});
+  }
 }
 
 bool WindingMap::hides(const PixelRectangle& rectangle, float nearest) {
@@ -150,6 +153,24 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
     for (std::size_t row = 0; row < rows; ++row) {
       gains[i].nearer += gains_[rows * i + row].nearer;
       gains[i].tiles += gains_[rows * i + row].tiles;
+    }
+  }
+  if (needs_ != nullptr) {
+    lookAgain();
+  }
+}
+
+// Looks at the tiles that have changed.
+void WindingMap::lookAgain() {
+  for (std::int32_t y = 0; y < rows_; ++y) {
+    for (std::int32_t x = 0; x < columns_; ++x) {
+      bool& changed = stale_[static_cast<std::size_t>(columns_ * y + x)];
+      if (changed) {
+        changed = false;
+        needs_->look(target_,
+                     {x * kTileWidth, y * kTileHeight, std::min((x + 1) * kTileWidth, buffer().width),
+                      std::min((y + 1) * kTileHeight, buffer().height)});
+      }
     }
   }
 }

@@ -47,29 +47,32 @@ struct NeedBed {
     return {values.data(), static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
             static_cast<std::uint32_t>(stride)};
   }
-  float at(std::int32_t x, std::int32_t y) const {
-    return values[static_cast<std::size_t>(y * stride + x)];
-  }
+  float at(std::int32_t x, std::int32_t y) const { return values[static_cast<std::size_t>(y * stride + x)]; }
 
-  // The same as NeedMap::needs(), pixel by pixel.
-  bool needs(const PixelRectangle& r, float nearest) const {
-    for (std::int32_t y = r.y0; y < r.y1; ++y) {
-      for (std::int32_t x = r.x0; x < r.x1; ++x) {
+  // The same as NeedMap::pixels(), pixel by pixel.
+  std::uint32_t pixels(const PixelRectangle& r, float nearest) const {
+    constexpr std::int32_t k = NeedMap::kSize;
+    std::int32_t squares = 0;
+    for (std::int32_t row = r.y0 / k; row * k < r.y1; ++row) {
+      for (std::int32_t column = r.x0 / k; column * k < r.x1; ++column) {
         float farthest_box = std::numeric_limits<float>::infinity(), nearest_box = -farthest_box;
         for (const ToHide& box : boxes) {
-          constexpr std::int32_t k = NeedMap::kSize;
           const PixelRectangle& b = box.rectangle;
-          if (b.x0 / k <= x / k && x / k <= (b.x1 - 1) / k && b.y0 / k <= y / k && y / k <= (b.y1 - 1) / k) {
+          if (b.x0 / k <= column && column <= (b.x1 - 1) / k && b.y0 / k <= row && row <= (b.y1 - 1) / k) {
             farthest_box = std::min(farthest_box, box.nearest);
             nearest_box = std::max(nearest_box, box.nearest);
           }
         }
-        if (nearest > farthest_box && at(x, y) < nearest_box) {
-          return true;
+        bool open = false;
+        for (std::int32_t y = row * k; y < std::min((row + 1) * k, height); ++y) {
+          for (std::int32_t x = column * k; x < std::min((column + 1) * k, width); ++x) {
+            open = open || at(x, y) < nearest_box;
+          }
         }
+        squares += open && nearest > farthest_box ? 1 : 0;
       }
     }
-    return false;
+    return static_cast<std::uint32_t>(std::min(squares * k * k, r.area()));
   }
 
   std::int32_t width, height, stride;
@@ -86,14 +89,14 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
     for (int k = 0; k < 5; ++k) {
       const PixelRectangle rectangle = bed.randomRectangle(random);
       const auto nearest = static_cast<float>(random.below(7));
-      const bool expected = bed.needs(rectangle, nearest);
+      const std::uint32_t expected = bed.pixels(rectangle, nearest);
       for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
-        EXPECT_EQ(bed.map.needs(bed.target(), rectangle, nearest), expected)
-            << n << ", " << hwy::TargetName(target);
+        bed.map.look(bed.target(), {0, 0, bed.width, bed.height});
+        EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
         hwy::SetSupportedTargetsForTest(0);
       }
-      (expected ? needed : not_needed) += 1;
+      (expected > 0 ? needed : not_needed) += 1;
     }
   }
   EXPECT_GT(needed, 2000u);
@@ -106,16 +109,22 @@ TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {
   NeedMap map;
   map.clear(target);
   map.add({8, 8, 16, 16}, 2.0f);
-  EXPECT_TRUE(map.needs(target, {0, 0, 40, 32}, 2.5f));
-  EXPECT_FALSE(map.needs(target, {0, 0, 40, 32}, 2.0f)) << "no nearer than the box";
-  EXPECT_FALSE(map.needs(target, {0, 0, 8, 32}, 2.5f)) << "to the left of it";
-  EXPECT_FALSE(map.needs(target, {0, 16, 40, 32}, 2.5f)) << "above it";
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u);
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.0f), 0u) << "no nearer than the box";
+  EXPECT_EQ(map.pixels({0, 0, 8, 32}, 2.5f), 0u) << "to the left of it";
+  EXPECT_EQ(map.pixels({0, 16, 40, 32}, 2.5f), 0u) << "above it";
+  EXPECT_EQ(map.pixels({10, 10, 12, 40}, 2.5f), 60u) << "no more than there are";
   for (std::size_t y = 8; y < 16; ++y) {
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(48 * y + 8), 8, 2.0f);
   }
-  EXPECT_FALSE(map.needs(target, {0, 0, 40, 32}, 2.5f)) << "it is hidden";
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 0u) << "it is hidden";
   values[48 * 12 + 11] = 1.9f;
-  EXPECT_TRUE(map.needs(target, {0, 0, 40, 32}, 2.5f)) << "but for one pixel";
+  map.clear(target);
+  map.add({8, 8, 16, 16}, 2.0f);
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u) << "but for one pixel";
 }
 
 }  // namespace

@@ -425,10 +425,8 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
     for (std::int32_t y = 0; y < kHeight; ++y) {
       for (std::int32_t x = 0; x < kWidth; ++x) {
         const float before = old[static_cast<std::size_t>(y * (kWidth + 8) + x)];
-        const auto [a, b] =
-            to_hide[static_cast<std::size_t>(y / kSquare * (kWidth / kSquare) + x / kSquare)];
-        expected +=
-            depth > before * 1.125f && depth > std::min(a, b) && before < std::max(a, b) ? 1u : 0u;
+        const auto [a, b] = to_hide[static_cast<std::size_t>(y / kSquare * (kWidth / kSquare) + x / kSquare)];
+        expected += depth > before * 1.125f && depth > std::min(a, b) && before < std::max(a, b) ? 1u : 0u;
       }
     }
     for (const std::int64_t instructions : hwy::SupportedAndGeneratedTargets()) {
