@@ -88,9 +88,7 @@ class SurfaceDrawer {
     listTries(frame.last_visible);
     // What several boxes or a finer buffer hid, the box as a whole does not say.
     findNews(last_kept_, frame.last_visible);
-    for (const ObjectId object : news_) {
-      targets_.push_back(bounds_[object.value]);
-    }
+    appendBounds(news_, targets_);
     SurfaceDrawing drawing = whatIsLeft(false);
     drawing.targets = targets_;
     drawing.useful_only = true;
@@ -98,12 +96,11 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
     removeHidden(hidden);
-    for (const ObjectId object : to_try_) {
-      hidden.push_back(bounds_[object.value]);
-    }
+    const double worth = kWorkForHidden * static_cast<double>(hidden.size()) +
+                         kWorkForTry * static_cast<double>(to_try_.size());
+    appendBounds(to_try_, hidden);
     if (!hidden.empty()) {
-      drawing = whatIsLeft(false);
-      aimAt(buffer, hidden, frame.last_visible, drawing);
+      aimAt(buffer, hidden, worth, frame.last_visible, whatIsLeft(false));
       built_work_ += count(buffer);
       work_ = built_work_;
     }
@@ -176,10 +173,10 @@ class SurfaceDrawer {
   static constexpr std::size_t kNearest = 512;
   // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
   static constexpr std::size_t kStill = 2;
-  // Objects that may be hidden by now are looked for once in so many views, and so much work is done for each
-  // box that is to be hidden.
+  // Kept objects that may be hidden by now are aimed at in one of so many views.
   static constexpr std::uint32_t kViewsBetweenTries = 4;
-  static constexpr double kWorkForBox = 100.0;
+  // So much is drawn for each box that was hidden in the last view or is new, and for each of these objects.
+  static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
@@ -210,10 +207,8 @@ class SurfaceDrawer {
     SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
     if (aims_) {
       targets_.clear();
-      for (const ObjectId object : news_) {
-        targets_.push_back(bounds_[object.value]);
-      }
-      aimAt(buffer, targets_, not_hidden, drawing);
+      appendBounds(news_, targets_);
+      aimAt(buffer, targets_, kWorkForHidden * static_cast<double>(news_.size()), not_hidden, drawing);
       count(buffer);
       return true;
     }
@@ -223,6 +218,11 @@ class SurfaceDrawer {
     return true;
   }
 
+  void appendBounds(std::span<const ObjectId> objects, std::vector<Box>& boxes) const {
+    for (const ObjectId object : objects) {
+      boxes.push_back(bounds_[object.value]);
+    }
+  }
   // Lists the kept objects that may be hidden by now: those that were new in the last view, and now and then
   // the others.
   void listTries(std::span<const ObjectId> kept) {
@@ -246,13 +246,12 @@ class SurfaceDrawer {
       }
     }
   }
-  // Draws surfaces before boxes that are to be hidden, for so much work as these are worth.
+  // Draws surfaces of some objects before boxes that are to be hidden, as much as these are worth.
   template <typename Buffer>
-  void aimAt(Buffer& buffer, std::span<const Box> boxes, std::span<const ObjectId> objects,
+  void aimAt(Buffer& buffer, std::span<const Box> boxes, double worth, std::span<const ObjectId> objects,
              SurfaceDrawing drawing) {
     drawing.targets = boxes;
-    drawing.budget = static_cast<std::uint32_t>(
-        std::min<double>(drawing.budget, kWorkForBox * static_cast<double>(boxes.size())));
+    drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, worth));
     draw(buffer, objects, ViewStep::kSame, drawing);
   }
 
