@@ -24,19 +24,24 @@ inline constexpr Pixels kPixels;
 using Squares = hn::CappedTag<float, 16>;
 inline constexpr Squares kSquares;
 
-// The least value of the target from pixel (x, y0) on, in the rows before y1 of a square.
-HWY_INLINE float leastOfSquare(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1) {
-  auto least = hn::Set(kPixels, kInfinite);
+// Whether some value of the target from pixel (x, y0) on, in the rows before y1 of a square, is less than
+// this.
+HWY_INLINE bool anyLess(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1,
+                        float than) {
   for (std::int32_t part = 0; part < kSquare; part += static_cast<std::int32_t>(hn::Lanes(kPixels))) {
     const float* pixels =
         target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y0) + x + part;
+    auto least = hn::Set(kPixels, kInfinite);
+    for (std::int32_t y = y0; y < y1; ++y, pixels += target.stride) {
+      least = hn::Min(least, hn::LoadU(kPixels, pixels));
+    }
     const auto valid = hn::FirstN(
         kPixels, static_cast<std::size_t>(std::max(static_cast<std::int32_t>(target.width) - x - part, 0)));
-    for (std::int32_t y = y0; y < y1; ++y, pixels += target.stride) {
-      least = hn::IfThenElse(valid, hn::Min(least, hn::LoadU(kPixels, pixels)), least);
+    if (!hn::AllFalse(kPixels, hn::And(valid, hn::Lt(least, hn::Set(kPixels, than))))) {
+      return true;
     }
   }
-  return hn::GetLane(hn::MinOfLanes(kPixels, least));
+  return false;
 }
 
 // Sets `open` to infinity in the squares of a row, from the first to the last column, in which the target
@@ -46,7 +51,7 @@ void closeSquares(const DepthTarget& target, std::int32_t row, std::int32_t firs
   const std::int32_t y0 = row * kSquare,
                      y1 = std::min(y0 + kSquare, static_cast<std::int32_t>(target.height));
   for (std::int32_t column = first; column <= last; ++column) {
-    if (open[column] < kInfinite && !(leastOfSquare(target, column * kSquare, y0, y1) < nearest[column])) {
+    if (open[column] < kInfinite && !anyLess(target, column * kSquare, y0, y1, nearest[column])) {
       open[column] = kInfinite;
     }
   }

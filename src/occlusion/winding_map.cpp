@@ -160,17 +160,21 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
   }
 }
 
-// Looks at the tiles that have changed.
+// Looks at the tiles that have changed, run by run.
 void WindingMap::lookAgain() {
   for (std::int32_t y = 0; y < rows_; ++y) {
-    for (std::int32_t x = 0; x < columns_; ++x) {
-      bool& changed = stale_[static_cast<std::size_t>(columns_ * y + x)];
-      if (changed) {
-        changed = false;
-        needs_->look(target_,
-                     {x * kTileWidth, y * kTileHeight, std::min((x + 1) * kTileWidth, buffer().width),
-                      std::min((y + 1) * kTileHeight, buffer().height)});
+    bool* changed = stale_.get() + static_cast<std::ptrdiff_t>(columns_) * y;
+    for (bool *first = changed, *end = changed + columns_; first != end;) {
+      first = std::find(first, end, true);
+      bool* after = std::find(first, end, false);
+      if (first != after) {
+        std::fill(first, after, false);
+        const auto x0 = static_cast<std::int32_t>(first - changed),
+                   x1 = static_cast<std::int32_t>(after - changed);
+        needs_->look(target_, {x0 * kTileWidth, y * kTileHeight, std::min(x1 * kTileWidth, buffer().width),
+                               std::min((y + 1) * kTileHeight, buffer().height)});
       }
+      first = after;
     }
   }
 }

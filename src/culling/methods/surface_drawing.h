@@ -99,13 +99,13 @@ class SurfaceDrawer {
     const double worth = kWorkForHidden * static_cast<double>(hidden.size()) +
                          kWorkForTry * static_cast<double>(to_try_.size());
     appendBounds(to_try_, hidden);
-    if (!hidden.empty()) {
+    if (!hidden.empty() && worth > kLeastWorth * built_work_) {
       aimAt(buffer, hidden, worth, frame.last_visible, whatIsLeft(false));
       built_work_ += count(buffer);
       work_ = built_work_;
     }
   }
-  static constexpr std::size_t kMostHidden = 256;
+  static constexpr std::size_t kMostHidden = 128;
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
@@ -177,6 +177,8 @@ class SurfaceDrawer {
   static constexpr std::uint32_t kViewsBetweenTries = 4;
   // So much is drawn for each box that was hidden in the last view or is new, and for each of these objects.
   static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
+  // They are not aimed at where all of that is less than this part of what was drawn before.
+  static constexpr double kLeastWorth = 0.5;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
