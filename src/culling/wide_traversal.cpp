@@ -54,6 +54,7 @@ class WideTraversal::Task {
   // Sets found.boxes, and makes room for their answers.
   void gatherBoxes(std::span<const Child> children);
   void updateDelay(const Child& child, bool hidden);
+  void noteHidden(const Child& child, const BoxAnswer& answer);
   void keepObject(const Child& child);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
@@ -71,6 +72,7 @@ class WideTraversal::Task {
 void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
                         std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
   entries_.clear();
+  hidden_children_.clear();
   if (!wide_.nodes.empty()) {
     // The root itself is never tested, only its children. So its own cost decides here.
     entries_.push_back({0, wide_.nodes[0].cost < options.min_node_cost});
@@ -103,6 +105,14 @@ void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& opti
     take(found_[i], stats);
   }
   visible_.drainInto(out);
+  hidden_.drainInto(hidden_children_);
+}
+
+void WideTraversal::appendHidden(std::size_t most, std::size_t turn, std::vector<Box>& boxes) const {
+  const std::size_t all = hidden_children_.size(), count = std::min(most, all);
+  for (std::size_t i = 0; i < count; ++i) {
+    boxes.push_back(wide_.boxes[hidden_children_[(i * all / count + turn) % all].value]);
+  }
 }
 
 std::vector<Vec3f> WideTraversal::centresOf(std::span<const Box> boxes) {
@@ -150,10 +160,14 @@ void WideTraversal::take(Found& found, CullStats& stats) {
   for (const ObjectId object : found.kept) {
     visible_.insert(object);
   }
+  for (const std::uint32_t child : found.hidden) {
+    hidden_.insert(ObjectId(child));
+  }
   stats.nodes_visited += found.nodes_visited;
   stats.nodes_tested += found.nodes_tested;
   stats.objects_tested += found.objects_tested;
   found.kept.clear();
+  found.hidden.clear();
   found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
 }
 
@@ -218,6 +232,7 @@ void WideTraversal::Task::testNodes() {
     for (std::size_t i = 0; i < found_.nodes.size(); ++i) {
       const BoxAnswer& answer = found_.answers[i];
       updateDelay(found_.nodes[i], answer.visibility == Visibility::kHidden);
+      noteHidden(found_.nodes[i], answer);
       keepNode(found_.nodes[i].number, answer, false);
     }
     found_.nodes.clear();
@@ -250,6 +265,7 @@ void WideTraversal::Task::testObjects() {
     for (std::size_t i = 0; i < left; ++i) {
       const bool hidden = found_.answers[i].visibility == Visibility::kHidden;
       updateDelay(objects[i], hidden);
+      noteHidden(objects[i], found_.answers[i]);
       if (!hidden) {
         keepObject(objects[i]);
       }
@@ -316,6 +332,13 @@ void WideTraversal::Task::updateDelay(const Child& child, bool hidden) {
     delay = static_cast<std::uint8_t>(hidden       ? 0u
                                       : delay != 0 ? delay - 1u
                                                    : kMinRetestDelay + (child.place & 3));
+  }
+}
+
+// What lies beside the view is not hidden by the buffer.
+void WideTraversal::Task::noteHidden(const Child& child, const BoxAnswer& answer) {
+  if (answer.visibility == Visibility::kHidden && answer.on_buffer) {
+    found_.hidden.push_back(child.index);
   }
 }
 

@@ -26,6 +26,7 @@ class WideTraversal {
         wide_(hierarchy::collapse(hierarchy, object_bounds)),
         object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
+        hidden_(wide_.boxes.size()),
         retest_delay_(wide_.boxes.size(), 0),
         seen_points_(centresOf(wide_.boxes)),
         found_(kMaxRanges) {}
@@ -35,6 +36,10 @@ class WideTraversal {
   // it is kept while it is in the view. The result does not depend on parallel_for.
   void run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
            std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
+
+  // Appends boxes of nodes and objects that the depth buffer hid in the last run, at most `most` of them.
+  // Where there are more they are spread over all of them, others in each turn.
+  void appendHidden(std::size_t most, std::size_t turn, std::vector<Box>& boxes) const;
 
   // From now on only objects of the set are tested and kept. The set's memory is not copied: call this again
   // whenever it changes.
@@ -71,6 +76,7 @@ class WideTraversal {
     std::vector<std::uint8_t> seen, retest_delay;
     std::vector<BoxAnswer> answers;
     std::vector<ObjectId> kept;
+    std::vector<std::uint32_t> hidden;  // children, by index, that the buffer hides
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
@@ -83,6 +89,9 @@ class WideTraversal {
   hierarchy::WideHierarchy wide_;
   std::size_t object_count_;
   ObjectBits visible_;
+  // Children, in place of objects, that the buffer hid in this run, and in ascending order in the last one.
+  ObjectBits hidden_;
+  std::vector<ObjectId> hidden_children_;
   std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again
   // By child: a point of its box at which it was last seen, first its centre. Where that is still seen, an
   // object is kept untested, and of a node only kVisible and kPartial are told apart; the answers do not

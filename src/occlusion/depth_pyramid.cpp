@@ -96,8 +96,10 @@ SurfaceStats DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawi
 }
 
 void DepthPyramid::finish(const ParallelFor& parallel_for) {
-  impl_->levels.build(impl_->raster.depthBuffer(), parallel_for);
-  impl_->finished = true;
+  if (!impl_->finished) {
+    impl_->levels.build(impl_->raster.depthBuffer(), parallel_for);
+    impl_->finished = true;
+  }
 }
 
 void DepthPyramid::classify(std::span<const Box> boxes, std::span<BoxAnswer> answers,

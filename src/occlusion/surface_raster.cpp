@@ -55,7 +55,7 @@ void SurfaceRaster::reserve(const SurfaceSet& set) {
   makeRoom(facings_, set.patches.size());
   makeRoom(patch_rests_, set.patches.size());
   makeRoom(part_rests_, set.parts.size());
-  makeRoom(drawn_in_, set.parts.size());
+  makeRoom(place_in_useful_, set.parts.size());
 }
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
@@ -65,16 +65,24 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   parallel_for_ = &parallel_for;
   winding_ = view.mirrored ? -1 : 1;
   start(set, view.eye, drawing.step);
-  map_.resize(target);
-  view_.begin(set, view, candidates, drawing.min_pixels, target);
+  view_.begin(set, view, drawing.min_pixels, target);
+  const bool all = drawing.targets.empty();
+  if (!all) {
+    view_.setNeeds(drawing.targets, needs_);
+  }
+  map_.begin(target, all ? nullptr : &needs_);
   chains_.begin(set, view, view_.clipDepth(), map_.buffer());
+  if (drawing.useful_only) {
+    listUseful();
+  } else {
+    view_.listParts(candidates);
+  }
   for (const PartImage& part : view_.parts()) {
     if (!withinBudget()) {
       break;
     }
-    if (drawn_in_[part.part] != view_number_ && !map_.hides(part.rectangle, part.nearest)) {
-      drawn_in_[part.part] = view_number_;
-      addPart(part);
+    if (const std::uint32_t pixels = map_.wanted(part.rectangle, part.nearest); pixels > 0) {
+      addPart(part, pixels);
       if (waiting_work_ > kFirstRound + work_ / 2) {
         drawGroups();
       }
@@ -99,11 +107,18 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
     std::fill(patch_rests_.begin(), patch_rests_.end(), Rest{});
     std::fill(part_rests_.begin(), part_rests_.end(), Rest{});
     std::fill(facings_.begin(), facings_.end(), Facing{});
-    std::fill(drawn_in_.begin(), drawn_in_.end(), 0u);
     view_number_ = 0;
   }
-  view_number_ += step == ViewStep::kSame && !anew ? 0 : 1;
+  if (step != ViewStep::kSame || anew) {
+    ++view_number_;
+    for (const UsefulPart& part : useful_) {
+      place_in_useful_[part.part] = 0;
+    }
+    useful_before_.swap(useful_);
+    useful_.clear();
+  }
   if (anew) {
+    useful_before_.clear();
     first_of_set_ = view_number_;
     travel_ = 0.0;
   } else if (moved > 0.0) {
@@ -123,9 +138,27 @@ bool SurfaceRaster::rests(const Rest& rest) const {
          (age <= kSteadyRest || (!view_.view().orthographic && travel_ <= rest.travel));
 }
 
-// Whether a surface is worth drawing at all.
-bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) const {
-  return rectangle.area() >= drawing_.pixels_per_edge * edges;
+// Whether a group is not drawn now, whatever it covers.
+bool SurfaceRaster::leavesOut(const Rest& rest) const {
+  return rest.drawn_in == view_number_ || (drawing_.useful_only && rest.paid_in + 1 != view_number_) ||
+         rests(rest);
+}
+
+// Lists the parts of which something paid in the view before, the most useful ones first.
+void SurfaceRaster::listUseful() {
+  std::sort(useful_before_.begin(), useful_before_.end(), [](const UsefulPart& a, const UsefulPart& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.part < b.part;
+  });
+  useful_parts_.clear();
+  for (const UsefulPart& useful : useful_before_) {
+    useful_parts_.push_back(useful.part);
+  }
+  view_.listParts(useful_parts_);
+}
+
+// Whether a surface is worth drawing at all. pixels: that may become nearer.
+bool SurfaceRaster::pays(std::uint32_t pixels, std::uint32_t edges) const {
+  return pixels >= drawing_.pixels_per_edge * edges;
 }
 
 // What is known of a patch is found again only when the eye has moved. In an orthographic view it depends on
@@ -142,13 +175,14 @@ const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
 }
 
 // Adds the large patches of a part, each alone, and all of them together.
-void SurfaceRaster::addPart(const PartImage& image) {
+void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   const SurfacePart& part = set_->parts[image.part];
+  part_ = image.part;
   part_distance_ = length(center(set_->part_bounds[image.part]) - eye_);
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
-  const bool together = part.patch_count + adjoining.size() > 1 && pays(image.rectangle, part.edge_count) &&
-                        !rests(part_rests_[image.part]);
+  const bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
+                        !leavesOut(part_rests_[image.part]);
   listPatches(part, together);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
@@ -156,7 +190,8 @@ void SurfaceRaster::addPart(const PartImage& image) {
   patches_.clear();
   for (PatchImage& patch : shown_) {
     const SurfacePatch& source = set_->patches[patch.patch];
-    if (map_.hides(patch.rectangle, patch.nearest)) {
+    const std::uint32_t of_patch = map_.wanted(patch.rectangle, patch.nearest);
+    if (of_patch == 0) {
       continue;
     }
     if (patch.sign != 0) {
@@ -170,8 +205,8 @@ void SurfaceRaster::addPart(const PartImage& image) {
     }
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
-    if (!rests(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
-        pays(patch.rectangle, source.edge_count) && withinBudget()) {
+    if (!leavesOut(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
+        pays(of_patch, source.edge_count) && withinBudget()) {
       addPatch(patch, patch_rests_[patch.patch]);
     }
   }
@@ -193,7 +228,7 @@ void SurfaceRaster::addPart(const PartImage& image) {
 void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
   sides_.clear();
   for (std::uint32_t patch = part.first_patch; patch < part.first_patch + part.patch_count; ++patch) {
-    if (together || !rests(patch_rests_[patch])) {
+    if (together || !leavesOut(patch_rests_[patch])) {
       const Facing& facing = facingOf(patch);
       if (!facing.away) {
         sides_.push_back({patch, facing.side});
@@ -254,6 +289,7 @@ void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& r
   group.rectangle = rectangle;
   group.flat = flat;
   group.distance = part_distance_;
+  group.part = part_;
   group.rest = &rest;
   waiting_work_ += workOf(group.edges, tilesIn(rectangle));
 }
@@ -336,20 +372,34 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
   }
 }
 
-// A group that changed too few pixels for what it cost rests, twice as long as the last time. Groups that
-// began to rest in the same view come back in different ones, or drawing them all would make one view slow.
+// What did not pay in a view for which it was drawn because it had paid before is not drawn first in the next
+// one; what did not pay otherwise rests.
 void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::uint64_t work) {
-  Rest& rest = *group.rest;
   stats_.gain += gain.nearer;
-  if (gain.nearer < kMinGain * static_cast<double>(work)) {
-    const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
-    const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
-    const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
-    rest = {view_number_, length + rested_++ % (length / 2 + 1),
-            travel_ + kTravelOfView * (length + 1) * group.distance};
-  } else {
-    rest = {};
+  group.rest->drawn_in = view_number_;
+  if (!(gain.nearer < kMinGain * static_cast<double>(work))) {
+    *group.rest = {.drawn_in = view_number_, .paid_in = view_number_};
+    std::uint32_t& place = place_in_useful_[group.part];
+    if (place == 0) {
+      useful_.push_back({group.part, 0});
+      place = static_cast<std::uint32_t>(useful_.size());
+    }
+    useful_[place - 1].gain += gain.nearer;
+  } else if (!drawing_.useful_only) {
+    rest(group);
   }
+}
+
+// Twice as long as the last time. Groups that begin to rest in the same view come back in different ones, or
+// drawing them all would make one view slow.
+void SurfaceRaster::rest(const Group& group) {
+  Rest& rest = *group.rest;
+  const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
+  const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
+  const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
+  rest.since = view_number_;
+  rest.length = length + rested_++ % (length / 2 + 1);
+  rest.travel = travel_ + kTravelOfView * (length + 1) * group.distance;
 }
 
 }  // namespace sightline::occlusion

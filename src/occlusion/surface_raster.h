@@ -40,11 +40,18 @@ class SurfaceRaster {
     double travel = 0.0;   // it is the same at least until travel_ is that much
   };
 
-  // What is not worth its cost is left out for some views.
+  // What is not worth its cost is left out for some views; what paid is drawn first in the next one.
   struct Rest {
-    std::uint32_t since = 0;   // number of the view in which that was found
-    std::uint32_t length = 0;  // views after that one, at most
-    double travel = 0.0;       // where a long rest ends: what travel_ is then
+    std::uint32_t since = 0;                  // number of the view in which that was found
+    std::uint32_t length = 0;                 // views after that one, at most
+    double travel = 0.0;                      // where a long rest ends: what travel_ is then
+    std::uint32_t drawn_in = 0, paid_in = 0;  // numbers of the last view in which it was drawn, and paid
+  };
+
+  // A part of which something paid in a view.
+  struct UsefulPart {
+    std::uint32_t part = 0;
+    std::uint64_t gain = 0;  // of all that paid
   };
 
   // A group that waits for being drawn.
@@ -55,14 +62,17 @@ class SurfaceRaster {
     PixelRectangle rectangle;
     bool flat = false;
     double distance = 0.0;  // from the eye, about, metres
-    Rest* rest = nullptr;   // its own
+    std::uint32_t part = 0;
+    Rest* rest = nullptr;  // its own
   };
 
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
   bool rests(const Rest& rest) const;
-  bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
+  bool leavesOut(const Rest& rest) const;
+  bool pays(std::uint32_t pixels, std::uint32_t edges) const;
+  void listUseful();
   const Facing& facingOf(std::uint32_t patch);
-  void addPart(const PartImage& part);
+  void addPart(const PartImage& part, std::uint32_t pixels);
   void listPatches(const SurfacePart& part, bool together);
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
@@ -76,6 +86,7 @@ class SurfaceRaster {
   bool withinBudget();
   void drawGroups();
   void account(const Group& group, const WindingGain& gain, std::uint64_t work);
+  void rest(const Group& group);
 
   const SurfaceSet* set_ = nullptr;
   SurfaceSetNumber set_number_;  // of the set that was drawn last
@@ -84,6 +95,7 @@ class SurfaceRaster {
   std::int32_t winding_ = 1;                   // of a front in this view; -1 in one that mirrors
   SurfaceView view_;
   ChainEdges chains_;
+  NeedMap needs_;  // with targets
   WindingMap map_;
   SurfaceStats stats_;
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
@@ -92,7 +104,6 @@ class SurfaceRaster {
   std::vector<ChainSum> sums_;                  // by chain
   std::vector<Facing> facings_;                 // by patch
   std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
-  std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t group_ = 0;                     // number of the last group
   // Groups that wait for being drawn, their boundaries, and how far away they are:
   std::vector<Group> groups_;
@@ -112,7 +123,13 @@ class SurfaceRaster {
   std::uint32_t rested_ = 0;        // groups that began to rest in this view
   Vec3d eye_;                       // of the last view
   double travel_ = 0.0;             // of the eye, from view to view of the set, or more; metres
-  double part_distance_ = 0.0;      // Group::distance of the part that addPart() was called for
+  // Of the part that addPart() was called for: its number, and Group::distance.
+  std::uint32_t part_ = 0;
+  double part_distance_ = 0.0;
+  // Parts of which something paid in this view and in the one before; and where a part is in the first list,
+  // plus 1, or 0.
+  std::vector<UsefulPart> useful_, useful_before_;
+  std::vector<std::uint32_t> place_in_useful_, useful_parts_;
 };
 
 }  // namespace sightline::occlusion

@@ -26,37 +26,67 @@ double reachOf(const Box& box, const PixelView& view) {
 
 }  // namespace
 
-void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-                        double min_pixels, const DepthTarget& target) {
+void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, double min_pixels,
+                        const DepthTarget& target) {
   set_ = &set;
   view_ = view;
   min_pixels_ = min_pixels;
   target_ = target;
   clip_depth_ = view.near * (1.0 + kNearMargin);
   setViewers();
-  candidates_.clear();
-  boxes_.clear();
   listed_.resize(set.parts.size());
   projection_ = BoxProjection(view, target.width, target.height);
   batches_ = view.stretch * reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) +
                  std::abs(view.middle_x) + std::abs(view.middle_y) <
              kLargestGrid / kGridStep;
   clusters_.clear();
-  unsorted_.clear();
-  if (view.sane()) {
-    listParts(candidates);
+  parts_.clear();
+}
+
+void SurfaceView::listParts(std::span<const ObjectId> objects) {
+  candidates_.clear();
+  if (view_.sane()) {
+    findCandidates(objects);
   }
+  imagesOfCandidates(unsorted_);
+  sortParts();
+}
+
+void SurfaceView::listParts(std::span<const std::uint32_t> parts) {
+  candidates_.clear();
+  if (view_.sane()) {
+    candidates_.assign(parts.begin(), parts.end());
+  }
+  imagesOfCandidates(parts_);
+}
+
+void SurfaceView::imagesOfCandidates(std::vector<PartImage>& images) {
+  boxes_.clear();
   for (const std::uint32_t part : candidates_) {
-    boxes_.push_back(set.part_bounds[part]);
+    boxes_.push_back(set_->part_bounds[part]);
   }
   project(boxes_, images_);
+  images.clear();
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     BoxExtent extent;
     if (extentOf(boxes_[i], images_[i], extent) && extent.rectangle.area() >= min_pixels_) {
-      unsorted_.push_back({candidates_[i], extent.rectangle, nearestOf(extent)});
+      images.push_back({candidates_[i], extent.rectangle, nearestOf(extent)});
     }
   }
-  sortParts();
+}
+
+void SurfaceView::setNeeds(std::span<const Box> boxes, NeedMap& needs) {
+  needs.clear(target_);
+  if (!view_.sane()) {
+    return;
+  }
+  project(boxes, images_);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    BoxExtent extent;
+    if (extentOf(boxes[i], images_[i], extent) && !extent.cut) {
+      needs.add(extent.rectangle, nearestOf(extent));
+    }
+  }
 }
 
 void SurfaceView::setViewers() {
@@ -92,7 +122,8 @@ bool SurfaceView::clearOfViewers(const Plane& support, double thickness) const {
 }
 
 // Sets candidates_ to the parts of the objects that may be large enough.
-void SurfaceView::listParts(std::span<const ObjectId> objects) {
+void SurfaceView::findCandidates(std::span<const ObjectId> objects) {
+  boxes_.clear();
   for (const ObjectId object : objects) {
     if (!set_->partsOf(object).empty()) {
       objects_.push_back(object);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
+#include "src/occlusion/need_map.h"
 #include "src/occlusion/pixel_boxes.h"
 #include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
@@ -69,10 +70,17 @@ class SurfaceView {
   double clipDepth() const { return clip_depth_; }
   const PixelView& view() const { return view_; }
 
-  // Lists the parts of the candidates that are large enough in the buffer, the nearest ones first.
-  void begin(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-             double min_pixels, const DepthTarget& target);
+  // min_pixels: parts with a smaller rectangle in the buffer are left out.
+  void begin(const SurfaceSet& set, const PixelView& view, double min_pixels, const DepthTarget& target);
+  // Lists the parts of some objects, the nearest ones first.
+  void listParts(std::span<const ObjectId> objects);
+  // Lists these parts, in this order.
+  void listParts(std::span<const std::uint32_t> parts);
+  // What was listed last.
   std::span<const PartImage> parts() const { return parts_; }
+
+  // Sets the map to what these boxes need, as far as they lie beyond the clip depth.
+  void setNeeds(std::span<const Box> boxes, NeedMap& needs);
 
   PatchSide sideOf(std::uint32_t patch) const;
   // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths
@@ -90,7 +98,9 @@ class SurfaceView {
   void addDepths(const ClusterImage& image, std::vector<PartDepth>& depths);
 
  private:
-  void listParts(std::span<const ObjectId> candidates);
+  void findCandidates(std::span<const ObjectId> objects);
+  // Sets `images` to those of the candidates that are large enough, in their order.
+  void imagesOfCandidates(std::vector<PartImage>& images);
   void setViewers();
   double tooNear() const;
   bool clearOfViewers(const Plane& support, double thickness) const;

@@ -86,8 +86,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void WindingMap::resize(const DepthTarget& target) {
+void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
   target_ = target;
+  needs_ = needs;
   const auto wholes = [](std::uint32_t pixels, std::int32_t size) {
     return (static_cast<std::int32_t>(pixels) + size - 1) / size;
   };
@@ -104,7 +105,10 @@ void WindingMap::resize(const DepthTarget& target) {
     far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
   }
   least_.assign(tiles, -kInfinity);
-  std::fill_n(stale_.get(), tiles, true);
+  std::fill_n(stale_.get(), tiles, needs_ == nullptr);
+  if (needs_ != nullptr) {
+    needs_->look(target_, {0, 0, buffer().width, buffer().height});
+  }
 }
 
 bool WindingMap::hides(const PixelRectangle& rectangle, float nearest) {
@@ -151,6 +155,28 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
       gains[i].tiles += gains_[rows * i + row].tiles;
     }
   }
+  if (needs_ != nullptr) {
+    lookAgain();
+  }
+}
+
+// Looks at the tiles that have changed, run by run.
+void WindingMap::lookAgain() {
+  for (std::int32_t y = 0; y < rows_; ++y) {
+    bool* changed = stale_.get() + static_cast<std::ptrdiff_t>(columns_) * y;
+    for (bool *first = changed, *end = changed + columns_; first != end;) {
+      first = std::find(first, end, true);
+      bool* after = std::find(first, end, false);
+      if (first != after) {
+        std::fill(first, after, false);
+        const auto x0 = static_cast<std::int32_t>(first - changed),
+                   x1 = static_cast<std::int32_t>(after - changed);
+        needs_->look(target_, {x0 * kTileWidth, y * kTileHeight, std::min(x1 * kTileWidth, buffer().width),
+                               std::min((y + 1) * kTileHeight, buffer().height)});
+      }
+      first = after;
+    }
+  }
 }
 
 WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
@@ -173,7 +199,8 @@ WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
                          .stale = stale_.get(),
                          .columns = columns_,
                          .range = tiles,
-                         .target = target_};
+                         .target = target_,
+                         .needs = needs_};
   if (group.flat) {
     return resolvePlane(cover, group.depths[0].depth);
   }

@@ -12,6 +12,7 @@
 #include "src/occlusion/boundary_edge.h"
 #include "src/occlusion/boundary_runs.h"
 #include "src/occlusion/depth_target.h"
+#include "src/occlusion/need_map.h"
 #include "src/occlusion/winding_resolve.h"
 #include "src/occlusion/winding_tiles.h"
 
@@ -27,13 +28,22 @@ struct WindingGroup {
 
 class WindingMap {
  public:
-  void resize(const DepthTarget& target);
+  // needs: what counts as a gain, or null for all that becomes nearer. It must outlive the view, and looks at
+  // the target again after each draw().
+  void begin(const DepthTarget& target, NeedMap* needs = nullptr);
   EdgeBuffer buffer() const {
     return {static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)};
   }
 
   // Whether all of a rectangle of the target is nearer than this reciprocal depth.
   bool hides(const PixelRectangle& rectangle, float nearest);
+  // In how many pixels of a rectangle of the target a surface that is nowhere nearer than this reciprocal
+  // depth may gain something; or more.
+  std::uint32_t wanted(const PixelRectangle& rectangle, float nearest) {
+    return needs_ != nullptr           ? needs_->pixels(rectangle, nearest)
+           : hides(rectangle, nearest) ? 0u
+                                       : static_cast<std::uint32_t>(rectangle.area());
+  }
 
   // Draws groups one after the other: covered pixels get the group's depth where that is nearer. Different
   // rows of tiles may be drawn by different threads; the result does not depend on them. edges: those that
@@ -49,12 +59,14 @@ class WindingMap {
     bool known = false;  // numbers are large enough for its windings
   };
 
+  void lookAgain();
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;
   // The rows of tiles from first_row to last_row of a group.
   WindingGain drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
                        std::int32_t first_row, std::int32_t last_row);
 
   DepthTarget target_;
+  NeedMap* needs_ = nullptr;
   std::int32_t columns_ = 0, rows_ = 0;  // of tiles
   std::vector<WindingTile> tiles_;       // all zero between groups
   std::vector<TileExtent> extents_;      // by row of tiles
@@ -62,7 +74,7 @@ class WindingMap {
   std::uint32_t far_stride_ = 0;
   std::vector<float> far_;          // see FarDepths; all infinite between groups
   std::vector<float> least_;        // by tile: of the target's values, or less
-  std::unique_ptr<bool[]> stale_;   // by tile: it may be less
+  std::unique_ptr<bool[]> stale_;   // by tile: it may be less; with needs, it has to be looked at again
   std::vector<Plan> plans_;         // of the groups that are drawn
   std::vector<WindingGain> gains_;  // by group and first row of the tiles that a thread draws
 };

@@ -92,11 +92,46 @@ class BlockDepths {
   std::uint32_t stride_;
 };
 
+// Which changes of the pixels in a row of tiles are gains.
+class Gains {
+ public:
+  HWY_INLINE Gains(const NeedMap* needs, std::int32_t tile_row) {
+    static_assert(kHigh == NeedMap::kSize);
+    if (needs != nullptr) {
+      farthest_ = needs->farthestOf(tile_row);
+      nearest_ = needs->nearestOf(tile_row);
+    }
+  }
+  // What the depths of the pixels from x on must be before, and the largest old ones that count.
+  HWY_INLINE PixelsV farthest(std::int32_t x) const {
+    return farthest_ != nullptr ? ofSquares(farthest_, x) : hn::Set(kPixels, -kInfinite);
+  }
+  HWY_INLINE PixelsV nearest(std::int32_t x) const {
+    return nearest_ != nullptr ? ofSquares(nearest_, x) : hn::Set(kPixels, kInfinite);
+  }
+
+ private:
+  static constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+  HWY_INLINE static PixelsV ofSquares(const float* squares, std::int32_t x) {
+    constexpr std::int32_t kSquare = NeedMap::kSize;
+    static_assert(hn::MaxLanes(kPixels) <= 2 * kSquare);
+    const float* square = squares + x / kSquare;
+    auto values = hn::Set(kPixels, square[0]);
+    if constexpr (hn::MaxLanes(kPixels) > kSquare) {
+      values = hn::IfThenElse(hn::FirstN(kPixels, kSquare), values, hn::Set(kPixels, square[1]));
+    }
+    return values;
+  }
+
+  const float *farthest_ = nullptr, *nearest_ = nullptr;
+};
+
 // Sets the pixels of a tile that have bits in covered[] to a depth where that is nearer. Returns how many of
-// them become nearer by kGain. stale: set if there are such pixels.
+// them become nearer by kGain, and gain by that. stale: set if there are such pixels.
 template <typename Depths>
 HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, const std::uint32_t* covered,
-                                  const Depths& depths, bool& stale) {
+                                  const Depths& depths, const Gains& gain, bool& stale) {
   const hn::RebindToUnsigned<Pixels> bits;
   const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels));
   const std::uint32_t all_lanes = ~0u >> (kWide - lanes);
@@ -114,6 +149,7 @@ HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, co
     const auto lane_bits =
         hn::Shl(hn::Set(bits, 1u), hn::Add(hn::Iota(bits, 0u), hn::Set(bits, static_cast<std::uint32_t>(x))));
     float* out = pixels.reciprocal_depth + tile * kWide + x;
+    const auto farthest = gain.farthest(tile * kWide + x), nearest = gain.nearest(tile * kWide + x);
     for (std::int32_t y = 0; y < pixels.rows;) {
       const auto column = depths.ofColumn(tile * kWide + x, y);
       for (const std::int32_t end = std::min(pixels.rows, y + Depths::kRows); y < end;
@@ -122,8 +158,9 @@ HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, co
         const auto old = hn::LoadU(kPixels, out), depth = depths.ofRow(column, y);
         const auto gains = hn::And(mask, hn::Gt(depth, old));
         hn::StoreU(hn::IfThenElse(gains, depth, old), kPixels, out);
-        nearer +=
-            hn::CountTrue(kPixels, hn::And(gains, hn::Gt(depth, hn::Mul(old, hn::Set(kPixels, kGain)))));
+        const auto needed = hn::And(hn::Gt(depth, hn::Max(farthest, hn::Mul(old, hn::Set(kPixels, kGain)))),
+                                    hn::Lt(old, nearest));
+        nearer += hn::CountTrue(kPixels, hn::And(gains, needed));
       }
     }
   }
@@ -183,7 +220,7 @@ HWY_INLINE std::int32_t coverRow(WindingTile* tiles, const TileExtent& extent, s
 // so the processor need not wait for what one tile covers before it begins with the next one.
 template <typename Depths>
 HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
-                             const Depths& depths, WindingGain& gain) {
+                             const Depths& depths, const Gains& gains, WindingGain& gain) {
   const std::ptrdiff_t first_tile = std::ptrdiff_t{group.columns} * row;
   WindingTile* tiles = group.tiles + first_tile;
   const TileExtent& extent = group.extents[row];
@@ -191,7 +228,7 @@ HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const Pi
   for (std::int32_t x = extent.first; x <= last; ++x) {
     ++gain.tiles;
     std::uint32_t* covered = tiles[x].planes[0];
-    gain.nearer += gainTile(pixels, x, covered, depths, group.stale[first_tile + x]);
+    gain.nearer += gainTile(pixels, x, covered, depths, gains, group.stale[first_tile + x]);
     for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kBits))) {
       hn::Store(hn::Zero(kBits), kBits, covered + lane);
     }
@@ -201,7 +238,7 @@ HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const Pi
 // The same of a group that is drawn in runs.
 template <typename Depths>
 HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
-                            const Depths& depths, WindingGain& gain) {
+                            const Depths& depths, const Gains& gains, WindingGain& gain) {
   const TileRowRuns& runs = group.runs[row];
   HWY_ALIGN std::uint32_t covered[kHigh];
   for (std::int32_t x = runs.extent.first; x <= runs.extent.last; ++x) {
@@ -212,7 +249,8 @@ HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const Pix
                             hn::Sub(hn::Load(kNumbers, runs.end + lane), origin)),
                 kBits, covered + lane);
     }
-    gain.nearer += gainTile(pixels, x, covered, depths, group.stale[std::ptrdiff_t{group.columns} * row + x]);
+    gain.nearer +=
+        gainTile(pixels, x, covered, depths, gains, group.stale[std::ptrdiff_t{group.columns} * row + x]);
   }
 }
 
@@ -223,10 +261,11 @@ HWY_INLINE WindingGain resolveRows(const GroupCover& group, const Source& source
   for (std::int32_t row = group.range.first_row; row <= group.range.last_row; ++row) {
     const PixelRows pixels(group.target, row);
     const Depths depths(source, row);
+    const Gains gains(group.needs, row);
     if (group.runs != nullptr) {
-      resolveRuns(group, row, pixels, depths, gain);
+      resolveRuns(group, row, pixels, depths, gains, gain);
     } else {
-      resolveTiles(group, row, pixels, depths, gain);
+      resolveTiles(group, row, pixels, depths, gains, gain);
     }
   }
   return gain;

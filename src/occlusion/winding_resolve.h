@@ -7,6 +7,7 @@
 #include "src/occlusion/boundary_runs.h"
 #include "src/occlusion/depth_target.h"
 #include "src/occlusion/far_depths.h"
+#include "src/occlusion/need_map.h"
 #include "src/occlusion/winding_tiles.h"
 
 namespace sightline::occlusion {
@@ -20,11 +21,12 @@ struct GroupCover {
   std::int32_t columns = 0;             // tiles in a row of the target
   TileRange range;                      // those of the group
   DepthTarget target;
+  const NeedMap* needs = nullptr;  // null: every pixel that becomes nearer is a gain
 };
 
 // What drawing a group did.
 struct WindingGain {
-  std::uint32_t nearer = 0;  // pixels that became nearer by an eighth or more
+  std::uint32_t nearer = 0;  // pixels that became nearer by an eighth or more, where that is needed
   std::uint32_t tiles = 0;   // that were looked at
 };
 

@@ -609,6 +609,78 @@ TEST(SurfaceProbes, WhatRestsIsDrawnWhereThatIsAskedFor) {
   }
 }
 
+// A box of a few pixels far behind (x, y, -10).
+Box behind(float x, float y) {
+  return {{3.0f * x - 1.0f, 3.0f * y - 1.0f, -31.0f}, {3.0f * x + 1.0f, 3.0f * y + 1.0f, -30.0f}};
+}
+
+TEST(SurfaceTargets, OnlySurfacesBeforeOneOfThemAreDrawn) {
+  Scene scene;
+  const MaterialId stone = addMaterial(scene, Opacity::kOpaque, true);
+  addWall(scene, stone, -10.0f, -9.0f, -2.0f, -9.0f, 9.0f);
+  addWall(scene, stone, -10.0f, 2.0f, 9.0f, -9.0f, 9.0f);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 64, .height = 64});
+  const auto drawn = [&](std::span<const Box> targets) {
+    SurfaceDrawing drawing = kEverything;
+    drawing.targets = targets;
+    raster.begin(frontView());
+    raster.draw(surfaces, surfaces.objects, drawing);
+    return std::array{raster.depthBuffer().covered(16, 32), raster.depthBuffer().covered(48, 32)};
+  };
+  EXPECT_EQ(drawn({}), (std::array{true, true}));
+  EXPECT_EQ(drawn(std::array{behind(-5.0f, 0.0f)}), (std::array{true, false}));
+  EXPECT_EQ(drawn(std::array{behind(5.0f, 0.0f)}), (std::array{false, true}));
+  EXPECT_EQ(drawn(std::array{behind(5.0f, 0.0f), behind(-5.0f, 3.0f)}), (std::array{true, true}));
+  EXPECT_EQ(drawn(std::array{Box{{-4.0f, -1.0f, -8.0f}, {4.0f, 1.0f, -7.0f}}}), (std::array{false, false}))
+      << "before both walls";
+  EXPECT_EQ(drawn(std::array{Box{{-4.0f, -1.0f, 7.0f}, {4.0f, 1.0f, 8.0f}}}), (std::array{false, false}))
+      << "behind the eye";
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(drawn(std::array{Box{{kNan, -1.0f, -31.0f}, {kNan, 1.0f, -30.0f}}}), (std::array{false, false}));
+}
+
+TEST(SurfaceTargets, WhatHidMostComesFirstInTheNextView) {
+  Scene scene;
+  const MaterialId stone = addMaterial(scene, Opacity::kOpaque, true);
+  for (int i = 0; i < 16; ++i) {
+    const auto x = static_cast<float>(i % 4 - 2), y = static_cast<float>(i / 4 - 2);
+    addWall(scene, stone, -5.0f, x + 0.1f, x + 0.9f, y + 0.1f, y + 0.9f);
+  }
+  addWall(scene, stone, -10.0f, -30.0f, 30.0f, -30.0f, 30.0f);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 128, .height = 128});
+  const std::array targets{Box{{-20.0f, -20.0f, -40.0f}, {20.0f, 20.0f, -30.0f}}};
+  SurfaceDrawing drawing = kEverything;
+  drawing.targets = targets;
+  drawing.useful_only = true;
+  raster.begin(frontView());
+  raster.draw(surfaces, surfaces.objects, drawing);
+  EXPECT_EQ(raster.surfaceStats().groups, 0u) << "nothing was drawn in a view before";
+
+  drawing.useful_only = false;
+  drawing.step = ViewStep::kSame;
+  raster.draw(surfaces, surfaces.objects, drawing);
+  EXPECT_EQ(raster.surfaceStats().groups, 17u);
+  EXPECT_EQ(prove(scene, frontView(), raster.depthBuffer(), 16).wrong, 0u);
+
+  drawing.useful_only = true;
+  drawing.step = ViewStep::kNext;
+  for (int view = 0; view < 3; ++view) {
+    raster.begin(frontView());
+    raster.draw(surfaces, {}, drawing);
+    // The wall, and what is drawn in one round with it: nothing else is needed.
+    EXPECT_GE(raster.surfaceStats().groups, 1u);
+    EXPECT_LE(raster.surfaceStats().groups, 8u);
+    for (std::uint32_t x = 0; x < 128; x += 8) {
+      EXPECT_TRUE(raster.depthBuffer().covered(x, 64));
+    }
+  }
+  drawing.step = ViewStep::kSame;
+  raster.draw(surfaces, {}, drawing);
+  EXPECT_EQ(raster.surfaceStats().groups, 0u) << "it is drawn once in a view";
+}
+
 // What is kept from view to view of which side of a surface shows changes nothing.
 TEST(SurfaceProbes, ViewsThatFollowEachOtherAreDrawnAsTheyAreAlone) {
   test::Random random(5);

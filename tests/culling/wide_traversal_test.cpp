@@ -173,6 +173,40 @@ void forPiecesBackwards(std::uint32_t count, const RangeBody& body) {
   }
 }
 
+TEST(WideTraversal, TellsWhatTheBufferHid) {
+  std::size_t culled = 0, told = 0;
+  for (const test::Family& family : test::kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const Bed bed(family, seed, 500);
+      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+      WideTraversal traversal(bvh, bed.boxes), cut(bvh, bed.boxes);
+      const std::vector<ObjectId> kept = traversed(traversal, bed.pyramid).kept;
+      std::vector<Box> hidden, in_pieces, some;
+      traversal.appendHidden(10000, 3, hidden);
+      for (const Box& box : hidden) {
+        EXPECT_EQ(bed.pyramid.classify(box), Visibility::kHidden);
+      }
+      const auto isTold = [&](const Box& object) {
+        return std::ranges::any_of(hidden, [&](const Box& box) { return contains(box, object); });
+      };
+      for (const ObjectId object : inView(bed.pyramid, bed.boxes)) {
+        const bool kept_too = std::ranges::binary_search(kept, object);
+        culled += kept_too ? 0 : 1;
+        told += !kept_too && isTold(bed.boxes[object.value]) ? 1 : 0;
+      }
+      Answer answer;
+      cut.run(bed.pyramid, {.temporal_coherence = false}, answer.stats, answer.kept, forPiecesBackwards);
+      cut.appendHidden(10000, 3, in_pieces);
+      EXPECT_EQ(in_pieces, hidden) << "threads change it";
+      traversal.appendHidden(5, 0, some);
+      EXPECT_EQ(some.size(), std::min<std::size_t>(hidden.size(), 5));
+    }
+  }
+  EXPECT_GT(culled, 200u);
+  // Of boxes that reach the near plane nothing is told.
+  EXPECT_GT(told, culled * 9 / 10);
+}
+
 TEST(WideTraversal, WithoutObjectsARangeMayBeEmpty) {
   const Bed bed(test::kFamilies[0], 1, 0);
   const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});

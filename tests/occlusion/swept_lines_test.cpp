@@ -302,7 +302,7 @@ TEST(SweptEdges, ThePixelsThatAreNotCoveredAreThoseThatTheEdgeMayTouch) {
   const float open = -std::numeric_limits<float>::max();
   std::vector<float> values(std::size_t{kStride} * kHeight);
   WindingMap map;
-  map.resize({values.data(), kWidth, kHeight, kStride});
+  map.begin({values.data(), kWidth, kHeight, kStride});
   // Around the buffer, and once more to its left: two edges that begin the group at one height, so that it is
   // not drawn in runs, which may leave more open.
   const auto rectangle = [&](double left, double right) {

@@ -59,7 +59,7 @@ void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBo
 // What one closed polygon covers in a map.
 class PolygonCover {
  public:
-  PolygonCover() { map_.resize({values_.data(), kMapWidth, kMapHeight, kMapStride}); }
+  PolygonCover() { map_.begin({values_.data(), kMapWidth, kMapHeight, kMapStride}); }
 
   const std::vector<float>& of(std::span<const GridPoint> polygon) {
     std::fill(values_.begin(), values_.end(), kNoDepth);
@@ -159,7 +159,7 @@ class SmallMap {
 
   void clear() {
     std::fill(values_.begin(), values_.end(), kNoDepth);
-    map_.resize(target_);
+    map_.begin(target_);
   }
   // Draws polygons as one group.
   void draw(std::span<const std::vector<GridPoint>> polygons, std::int32_t value, float depth) {
@@ -403,6 +403,61 @@ TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNe
       hwy::SetSupportedTargetsForTest(0);
       first = first.empty() ? values : first;
       ASSERT_EQ(values, first) << n << ", " << hwy::TargetName(target);
+    }
+  }
+}
+
+TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
+  constexpr std::int32_t kWidth = 72, kHeight = 40, kSquare = NeedMap::kSize;
+  const PixelRectangle all{0, 0, kWidth, kHeight};
+  const std::array polygon{Polygon{box(-9.0, -9.0, kWidth + 9.0, kHeight + 9.0)}};
+  std::mt19937 random(31);
+  const auto number = test::numbersFrom<float>(random);
+  for (int n = 0; n < 100; ++n) {
+    std::vector<float> old(std::size_t{kWidth + 8} * kHeight);
+    std::ranges::generate(old, [&] { return number(0.0f, 4.0f); });
+    std::vector<std::array<float, 2>> to_hide;  // by square: reciprocal depths of two boxes
+    for (std::int32_t i = 0; i < kWidth * kHeight / (kSquare * kSquare); ++i) {
+      to_hide.push_back({number(0.0f, 4.0f), number(0.0f, 4.0f)});
+    }
+    const float depth = number(1.0f, 4.0f);
+    std::uint32_t expected = 0;
+    for (std::int32_t y = 0; y < kHeight; ++y) {
+      for (std::int32_t x = 0; x < kWidth; ++x) {
+        const float before = old[static_cast<std::size_t>(y * (kWidth + 8) + x)];
+        const auto [a, b] = to_hide[static_cast<std::size_t>(y / kSquare * (kWidth / kSquare) + x / kSquare)];
+        expected += depth > before * 1.125f && depth > std::min(a, b) && before < std::max(a, b) ? 1u : 0u;
+      }
+    }
+    for (const std::int64_t instructions : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(instructions);
+      std::vector<float> values = old;
+      const DepthTarget target{values.data(), kWidth, kHeight, kWidth + 8};
+      NeedMap needs;
+      needs.clear(target);
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(to_hide.size()); ++i) {
+        const std::int32_t x = i % (kWidth / kSquare) * kSquare, y = i / (kWidth / kSquare) * kSquare;
+        for (const float nearest : to_hide[static_cast<std::size_t>(i)]) {
+          needs.add({x, y, x + kSquare, y + kSquare}, nearest);
+        }
+      }
+      WindingMap map;
+      map.begin(target, &needs);
+      std::vector<BoundaryEdge> edges;
+      const std::array chains{addChain(polygon[0].points, 1, map.buffer(), edges)};
+      const std::array depths{PartDepth{all, {.at_origin = depth, .floor = depth}}};
+      for (const bool flat : {false, true}) {
+        values = old;
+        std::array<WindingGain, 1> gains;
+        map.draw(std::array{WindingGroup{all, chains, depths, flat}}, edges, gains);
+        EXPECT_EQ(gains[0].nearer, expected) << n << ", " << flat << ", " << hwy::TargetName(instructions);
+        for (std::size_t i = 0; i < old.size(); ++i) {
+          if (i % (kWidth + 8) < kWidth) {
+            ASSERT_EQ(values[i], std::max(old[i], depth)) << "all that is covered is drawn";
+          }
+        }
+      }
+      hwy::SetSupportedTargetsForTest(0);
     }
   }
 }

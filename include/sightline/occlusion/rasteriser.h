@@ -8,6 +8,7 @@
 #include <span>
 
 #include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
 #include "sightline/scene/camera.h"
@@ -82,6 +83,12 @@ struct SurfaceDrawing {
   std::uint32_t budget = 60000;
   ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
   bool draw_resting = false;        // what rests is drawn too
+  // Empty, or boxes in scene space that are to be hidden: surfaces are drawn only where they are before one
+  // of these and something of it is not hidden yet, and pixels count as changed where that is so.
+  std::span<const Box> targets{};
+  // Only what changed many pixels in the view before is drawn, the parts that changed most first. The
+  // candidates are not looked at.
+  bool useful_only = false;
 };
 
 // What a draw() of surfaces drew.

@@ -49,8 +49,9 @@ class DepthPyramidMethod final : public CullingMethod {
     pyramid_->begin(frame.view, frame.viewers);
     own_occluders_ = culling::drawOccluders(*pyramid_, frame.occluders, *frame.parallel_for);
     surfaces_.begin(frame);
-    surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
-    work_ = surfaces_.work() + surfaces_.drawMoving(*pyramid_, frame);
+    work_ = surfaces_.drawMoving(*pyramid_, frame);
+    drawSurfaces(frame);
+    work_ += surfaces_.work();
     pyramid_->finish(*frame.parallel_for);
     if (focus_) {
       focus_->begin();
@@ -126,6 +127,29 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
+  void drawSurfaces(const CullingFrame& frame) {
+    hidden_.clear();
+    if (settings_.temporal_coherence && !frame.jumped && surfaces_.draws()) {
+      traversal_->appendHidden(culling::SurfaceDrawer::kMostHidden, turn_++, hidden_);
+    }
+    if (hidden_.empty()) {
+      surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
+      return;
+    }
+    surfaces_.drawWhatHides(*pyramid_, frame, hidden_, [&](std::vector<Box>& boxes) {
+      pyramid_->finish(*frame.parallel_for);
+      answers_.resize(std::max(answers_.size(), boxes.size()));
+      pyramid_->classify(boxes, answers_, {.plain_from = 0});
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (answers_[i].visibility != Visibility::kHidden) {
+          boxes[left++] = boxes[i];
+        }
+      }
+      boxes.resize(left);
+    });
+  }
+
   DepthPyramidMethodSettings settings_;
   culling::SurfaceDrawer surfaces_;
   CullingScene scene_;
@@ -134,6 +158,8 @@ class DepthPyramidMethod final : public CullingMethod {
   std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
   double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
+  std::vector<Box> hidden_;                  // what is to be hidden in this view, as it was in the last one
+  std::size_t turn_ = 0;
   // Scratch for one classify() call: all boxes, the points at which they were last seen and whether they
   // still are, and their answers.
   std::vector<Box> asked_;

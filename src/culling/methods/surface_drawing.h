@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sightline/culling/culling_method.h"
+#include "src/culling/doubt_memory.h"
 #include "src/culling/last_view.h"
 #include "src/culling/nearest_objects.h"
 #include "src/culling/timed_budget.h"
@@ -34,6 +35,8 @@ class SurfaceDrawer {
     timed_ = TimedBudget(budget_us_);
     last_kept_.clear();
     news_.clear();
+    bounds_ = scene.object_bounds;
+    tried_ = DoubtMemory(surfaces_ != nullptr ? bounds_.size() : 0);
     nearest_.reset();
     if (surfaces_ != nullptr) {
       nearest_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -58,6 +61,8 @@ class SurfaceDrawer {
     work_ = built_work_ = 0.0;
     groups_ = edges_ = 0;
     in_frustum_.clear();
+    to_try_.clear();
+    aims_ = false;
     jumped_ = frame.jumped;
     more_in_frustum_ = draws() && frame.jumped &&
                        !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
@@ -70,6 +75,38 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
   }
+  // The same in a view that follows the last one for which this buffer was drawn: only what hides something
+  // is drawn. hidden: boxes that the buffer hid in that view, at most kMostHidden. First comes what hid most
+  // there. What is left of the boxes after that, and objects that were kept and may be hidden by now, are
+  // then aimed at with what else there is. removeHidden(boxes) removes those that the buffer, as it is,
+  // hides.
+  template <typename Buffer, typename RemoveHidden>
+  void drawWhatHides(Buffer& buffer, const CullingFrame& frame, std::vector<Box>& hidden,
+                     const RemoveHidden& removeHidden) {
+    aims_ = true;
+    targets_ = hidden;
+    listTries(frame.last_visible);
+    // What several boxes or a finer buffer hid, the box as a whole does not say.
+    findNews(last_kept_, frame.last_visible);
+    appendBounds(news_, targets_);
+    SurfaceDrawing drawing = whatIsLeft(false);
+    drawing.targets = targets_;
+    drawing.useful_only = true;
+    draw(buffer, {}, ViewStep::kNext, drawing);
+    built_work_ = count(buffer);
+    work_ += built_work_;
+    removeHidden(hidden);
+    const double worth = kWorkForHidden * static_cast<double>(hidden.size()) +
+                         kWorkForTry * static_cast<double>(to_try_.size());
+    appendBounds(to_try_, hidden);
+    if (!hidden.empty() && worth > kLeastWorth * built_work_) {
+      aimAt(buffer, hidden, worth, frame.last_visible, whatIsLeft(false));
+      built_work_ += count(buffer);
+      work_ = built_work_;
+    }
+  }
+  static constexpr std::size_t kMostHidden = 128;
+
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
   // surfaces to be drawn, draws them, calls finish() and asks once more; `stats` counts the last time alone,
@@ -88,6 +125,7 @@ class SurfaceDrawer {
       }
       findNews(visible, last_kept_);
       last_kept_ = visible;
+      learnTries();
     }
     stats = found;
   }
@@ -135,6 +173,12 @@ class SurfaceDrawer {
   static constexpr std::size_t kNearest = 512;
   // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
   static constexpr std::size_t kStill = 2;
+  // Kept objects that may be hidden by now are aimed at in one of so many views.
+  static constexpr std::uint32_t kViewsBetweenTries = 4;
+  // So much is drawn for each box that was hidden in the last view or is new, and for each of these objects.
+  static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
+  // They are not aimed at where all of that is less than this part of what was drawn before.
+  static constexpr double kLeastWorth = 0.5;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
@@ -163,10 +207,54 @@ class SurfaceDrawer {
     }
     // What comes into view is not counted in the budget, but for one of time.
     SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
+    if (aims_) {
+      targets_.clear();
+      appendBounds(news_, targets_);
+      aimAt(buffer, targets_, kWorkForHidden * static_cast<double>(news_.size()), not_hidden, drawing);
+      count(buffer);
+      return true;
+    }
     drawing.draw_resting = news_.size() * kStill > not_hidden.size();
     draw(buffer, news_, ViewStep::kSame, drawing);
     count(buffer);
     return true;
+  }
+
+  void appendBounds(std::span<const ObjectId> objects, std::vector<Box>& boxes) const {
+    for (const ObjectId object : objects) {
+      boxes.push_back(bounds_[object.value]);
+    }
+  }
+  // Lists the kept objects that may be hidden by now: those that were new in the last view, and now and then
+  // the others.
+  void listTries(std::span<const ObjectId> kept) {
+    tried_.beginView();
+    for (const ObjectId object : news_) {
+      tried_.hidden(object);
+    }
+    if (!news_.empty() || ++views_ % kViewsBetweenTries == 0) {
+      for (const ObjectId object : kept) {
+        if (!tried_.rests(object)) {
+          to_try_.push_back(object);
+        }
+      }
+    }
+  }
+  // Those that were aimed at and are still kept are left alone for a while.
+  void learnTries() {
+    for (const ObjectId object : to_try_) {
+      if (std::binary_search(last_kept_.begin(), last_kept_.end(), object)) {
+        tried_.seen(object);
+      }
+    }
+  }
+  // Draws surfaces of some objects before boxes that are to be hidden, as much as these are worth.
+  template <typename Buffer>
+  void aimAt(Buffer& buffer, std::span<const Box> boxes, double worth, std::span<const ObjectId> objects,
+             SurfaceDrawing drawing) {
+    drawing.targets = boxes;
+    drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, worth));
+    draw(buffer, objects, ViewStep::kSame, drawing);
   }
 
   // How surfaces are drawn with what is left of the frame's budget.
@@ -215,6 +303,12 @@ class SurfaceDrawer {
   std::vector<ObjectId> in_frustum_;  // objects whose surfaces are drawn first after a jump
   bool more_in_frustum_ = false;      // whether there are others in the frustum
   std::vector<ObjectId> last_kept_, news_;
+  std::span<const Box> bounds_;  // of the scene's objects
+  bool aims_ = false;            // only what hides something is drawn in this frame
+  std::vector<Box> targets_;
+  DoubtMemory tried_{0};          // kept objects that were aimed at
+  std::vector<ObjectId> to_try_;  // those that are in this frame
+  std::uint32_t views_ = 0;
 };
 
 }  // namespace sightline::culling

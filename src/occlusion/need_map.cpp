@@ -1,0 +1,133 @@
+#include "src/occlusion/need_map.h"
+
+#include <algorithm>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/occlusion/need_map.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::int32_t kSquare = NeedMap::kSize;
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// A lane for each pixel of a row of a square, or of a part of it.
+using Pixels = hn::CappedTag<float, kSquare>;
+inline constexpr Pixels kPixels;
+// A lane for each square of a row.
+using Squares = hn::CappedTag<float, 16>;
+inline constexpr Squares kSquares;
+
+// Whether some value of the target from pixel (x, y0) on, in the rows before y1 of a square, is less than
+// this.
+HWY_INLINE bool anyLess(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1,
+                        float than) {
+  for (std::int32_t part = 0; part < kSquare; part += static_cast<std::int32_t>(hn::Lanes(kPixels))) {
+    const float* pixels =
+        target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y0) + x + part;
+    auto least = hn::Set(kPixels, kInfinite);
+    for (std::int32_t y = y0; y < y1; ++y, pixels += target.stride) {
+      least = hn::Min(least, hn::LoadU(kPixels, pixels));
+    }
+    const auto valid = hn::FirstN(
+        kPixels, static_cast<std::size_t>(std::max(static_cast<std::int32_t>(target.width) - x - part, 0)));
+    if (!hn::AllFalse(kPixels, hn::And(valid, hn::Lt(least, hn::Set(kPixels, than))))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Sets `open` to infinity in the squares of a row, from the first to the last column, in which the target
+// hides the nearest box.
+void closeSquares(const DepthTarget& target, std::int32_t row, std::int32_t first, std::int32_t last,
+                  const float* nearest, float* open) {
+  const std::int32_t y0 = row * kSquare,
+                     y1 = std::min(y0 + kSquare, static_cast<std::int32_t>(target.height));
+  for (std::int32_t column = first; column <= last; ++column) {
+    if (open[column] < kInfinite && !anyLess(target, column * kSquare, y0, y1, nearest[column])) {
+      open[column] = kInfinite;
+    }
+  }
+}
+
+// The number of these values that are less than `nearest`. They may be read up to the end of a vector.
+std::size_t openBehind(const float* open, std::size_t count, float nearest) {
+  const auto near = hn::Set(kSquares, nearest);
+  const std::size_t lanes = hn::Lanes(kSquares);
+  std::size_t behind = 0;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const auto valid = hn::FirstN(kSquares, std::min(count - i, lanes));
+    behind += hn::CountTrue(kSquares, hn::And(valid, hn::Lt(hn::LoadU(kSquares, open + i), near)));
+  }
+  return behind;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion {
+namespace {
+HWY_EXPORT(closeSquares);
+HWY_EXPORT(openBehind);
+
+constexpr std::int32_t kVector = 16;  // squares
+
+}  // namespace
+
+void NeedMap::clear(const DepthTarget& target) {
+  const auto squares = [](std::uint32_t pixels) {
+    return (static_cast<std::int32_t>(pixels) + kSize - 1) / kSize;
+  };
+  columns_ = squares(target.width);
+  rows_ = squares(target.height);
+  stride_ = columns_ + kVector;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  farthest_.assign(at(rows_), kInfinity);
+  nearest_.assign(at(rows_), -kInfinity);
+  open_.assign(at(rows_), kInfinity);
+}
+
+void NeedMap::add(const PixelRectangle& rectangle, float nearest) {
+  const std::int32_t first = rectangle.x0 / kSize, end = (rectangle.x1 - 1) / kSize + 1;
+  for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
+    float *farthest = farthest_.data() + at(row), *near = nearest_.data() + at(row),
+          *open = open_.data() + at(row);
+    for (std::int32_t column = first; column < end; ++column) {
+      farthest[column] = open[column] = std::min(farthest[column], nearest);
+      near[column] = std::max(near[column], nearest);
+    }
+  }
+}
+
+void NeedMap::look(const DepthTarget& target, const PixelRectangle& rectangle) {
+  const std::int32_t first = rectangle.x0 / kSize, last = (rectangle.x1 - 1) / kSize;
+  for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
+    HWY_DYNAMIC_DISPATCH(closeSquares)(target, row, first, last, nearestOf(row), open_.data() + at(row));
+  }
+}
+
+std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, float nearest) const {
+  if (rectangle.empty()) {
+    return 0;
+  }
+  const std::int32_t first = rectangle.x0 / kSize, end = (rectangle.x1 - 1) / kSize + 1;
+  std::size_t squares = 0;
+  for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
+    squares += HWY_DYNAMIC_DISPATCH(openBehind)(open_.data() + at(row) + first,
+                                                static_cast<std::size_t>(end - first), nearest);
+  }
+  return static_cast<std::uint32_t>(
+      std::min<std::size_t>(squares * kSize * kSize, static_cast<std::size_t>(rectangle.area())));
+}
+
+}  // namespace sightline::occlusion
+#endif

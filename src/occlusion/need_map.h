@@ -1,0 +1,46 @@
+#pragma once
+
+// Where in a depth buffer something has to be hidden, and how near it is there.
+
+#include <cstdint>
+#include <vector>
+
+#include "src/occlusion/depth_target.h"
+
+namespace sightline::occlusion {
+
+// In squares of pixels, for boxes that are to be hidden. What is before none of them, or only where all that
+// there is of them is hidden, is of no use.
+class NeedMap {
+ public:
+  static constexpr std::int32_t kSize = 8;  // pixels along each side of a square
+
+  // Needs nothing.
+  void clear(const DepthTarget& target);
+  // A box that lies in these pixels and is nowhere nearer than this reciprocal depth is to be hidden.
+  void add(const PixelRectangle& rectangle, float nearest);
+  // Looks what the target hides by now in the squares with pixels of a rectangle. Call this before pixels(),
+  // and where the target has come nearer since.
+  void look(const DepthTarget& target, const PixelRectangle& rectangle);
+
+  // An upper bound of how many pixels of a rectangle may be of use for a surface that is nowhere nearer than
+  // this reciprocal depth.
+  std::uint32_t pixels(const PixelRectangle& rectangle, float nearest) const;
+
+  // A value for each square of a row, and one more: reciprocal depths of the farthest and of the nearest box
+  // there. A surface is of use where it is before the farthest, and what is there already is not before the
+  // nearest.
+  const float* farthestOf(std::int32_t row) const { return farthest_.data() + at(row); }
+  const float* nearestOf(std::int32_t row) const { return nearest_.data() + at(row); }
+
+ private:
+  std::size_t at(std::int32_t row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(stride_);
+  }
+
+  std::int32_t columns_ = 0, rows_ = 0, stride_ = 0;  // stride: columns, and room for a vector
+  std::vector<float> farthest_, nearest_;
+  std::vector<float> open_;  // the farthest box where some pixel does not hide all, else infinite
+};
+
+}  // namespace sightline::occlusion

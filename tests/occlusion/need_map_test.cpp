@@ -1,0 +1,131 @@
+#include "src/occlusion/need_map.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "tests/support/random_numbers.h"
+
+namespace sightline::occlusion {
+namespace {
+
+struct ToHide {
+  PixelRectangle rectangle;
+  float nearest = 0.0f;
+};
+
+// A depth buffer, and boxes that are to be hidden in it.
+struct NeedBed {
+  explicit NeedBed(test::Random& random)
+      : width(1 + static_cast<std::int32_t>(random.below(70))),
+        height(1 + static_cast<std::int32_t>(random.below(40))),
+        stride((width + 15) / 8 * 8),
+        values(static_cast<std::size_t>(stride) * static_cast<std::size_t>(height)) {
+    for (float& value : values) {
+      value = static_cast<float>(random.below(6));
+    }
+    for (std::size_t i = random.below(5); i > 0; --i) {
+      boxes.push_back({randomRectangle(random), static_cast<float>(random.below(6))});
+    }
+    map.clear(target());
+    for (const ToHide& box : boxes) {
+      map.add(box.rectangle, box.nearest);
+    }
+  }
+
+  PixelRectangle randomRectangle(test::Random& random) const {
+    const auto below = [&](std::int32_t end) {
+      return static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(end)));
+    };
+    const std::int32_t x = below(width), y = below(height);
+    return {x, y, x + 1 + below(width - x), y + 1 + below(height - y)};
+  }
+  DepthTarget target() {
+    return {values.data(), static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+            static_cast<std::uint32_t>(stride)};
+  }
+  float at(std::int32_t x, std::int32_t y) const { return values[static_cast<std::size_t>(y * stride + x)]; }
+
+  // The same as NeedMap::pixels(), pixel by pixel.
+  std::uint32_t pixels(const PixelRectangle& r, float nearest) const {
+    constexpr std::int32_t k = NeedMap::kSize;
+    std::int32_t squares = 0;
+    for (std::int32_t row = r.y0 / k; row * k < r.y1; ++row) {
+      for (std::int32_t column = r.x0 / k; column * k < r.x1; ++column) {
+        float farthest_box = std::numeric_limits<float>::infinity(), nearest_box = -farthest_box;
+        for (const ToHide& box : boxes) {
+          const PixelRectangle& b = box.rectangle;
+          if (b.x0 / k <= column && column <= (b.x1 - 1) / k && b.y0 / k <= row && row <= (b.y1 - 1) / k) {
+            farthest_box = std::min(farthest_box, box.nearest);
+            nearest_box = std::max(nearest_box, box.nearest);
+          }
+        }
+        bool open = false;
+        for (std::int32_t y = row * k; y < std::min((row + 1) * k, height); ++y) {
+          for (std::int32_t x = column * k; x < std::min((column + 1) * k, width); ++x) {
+            open = open || at(x, y) < nearest_box;
+          }
+        }
+        squares += open && nearest > farthest_box ? 1 : 0;
+      }
+    }
+    return static_cast<std::uint32_t>(std::min(squares * k * k, r.area()));
+  }
+
+  std::int32_t width, height, stride;
+  std::vector<float> values;
+  std::vector<ToHide> boxes;
+  NeedMap map;
+};
+
+TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
+  test::Random random(3);
+  std::size_t needed = 0, not_needed = 0;
+  for (int n = 0; n < 4000; ++n) {
+    NeedBed bed(random);
+    for (int k = 0; k < 5; ++k) {
+      const PixelRectangle rectangle = bed.randomRectangle(random);
+      const auto nearest = static_cast<float>(random.below(7));
+      const std::uint32_t expected = bed.pixels(rectangle, nearest);
+      for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        bed.map.look(bed.target(), {0, 0, bed.width, bed.height});
+        EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
+        hwy::SetSupportedTargetsForTest(0);
+      }
+      (expected > 0 ? needed : not_needed) += 1;
+    }
+  }
+  EXPECT_GT(needed, 2000u);
+  EXPECT_GT(not_needed, 2000u);
+}
+
+TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {
+  std::vector<float> values(std::size_t{48} * 32, -1.0f);
+  const DepthTarget target{values.data(), 40, 32, 48};
+  NeedMap map;
+  map.clear(target);
+  map.add({8, 8, 16, 16}, 2.0f);
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u);
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.0f), 0u) << "no nearer than the box";
+  EXPECT_EQ(map.pixels({0, 0, 8, 32}, 2.5f), 0u) << "to the left of it";
+  EXPECT_EQ(map.pixels({0, 16, 40, 32}, 2.5f), 0u) << "above it";
+  EXPECT_EQ(map.pixels({10, 10, 12, 40}, 2.5f), 60u) << "no more than there are";
+  for (std::size_t y = 8; y < 16; ++y) {
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(48 * y + 8), 8, 2.0f);
+  }
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 0u) << "it is hidden";
+  values[48 * 12 + 11] = 1.9f;
+  map.clear(target);
+  map.add({8, 8, 16, 16}, 2.0f);
+  map.look(target, {0, 0, 40, 32});
+  EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u) << "but for one pixel";
+}
+
+}  // namespace
+}  // namespace sightline::occlusion
