@@ -14,6 +14,7 @@
 #include "sightline/occluders/surface_set.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/edge_scene.h"
+#include "tests/support/rounds.h"
 #include "tests/support/solids.h"
 
 namespace sightline::culling {
@@ -147,7 +148,7 @@ TEST(FocusedCuller, SeesNoPointOfABoxThatAFinerBufferHides) {
 
 TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
   std::size_t focused_frames = 0, judged = 0, more = 0;
-  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(16u); ++seed) {
     const Street street(seed);
     AnySettings settings = focused(seed % 2 == 0);
     AnyCuller culler(street.hierarchy, street.bounds, street.occluders, settings);
@@ -176,9 +177,9 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
       }
     }
   }
-  EXPECT_GT(focused_frames, 60u);
-  EXPECT_GT(judged, 5'000u);
-  EXPECT_GT(more, 40u) << "hidden by the window's map alone";
+  EXPECT_GT(focused_frames, test::rounds(60u));
+  EXPECT_GT(judged, test::rounds(5'000u));
+  EXPECT_GT(more, test::rounds(40u)) << "hidden by the window's map alone";
 }
 
 TEST(FocusedCuller, HasAtMostAsManyWindowsAsItIsToldAndNoneWithoutMagnification) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/judge_culling.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -28,13 +29,13 @@ TEST(HostileScenes, SeedsThatFoundAFalseCullFindNoneAnyMore) {
 
 TEST(HostileScenes, NothingThatIsCulledCanBeSeen) {
   test::JudgeCounts counts;
-  for (std::uint64_t seed = 0; seed < 250; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(250u); ++seed) {
     expectNoFalseCull(seed, counts);
   }
   // The scenes are worth nothing if little is culled in them, or if little of that is proved.
-  EXPECT_GT(counts.culled - counts.frustum, 3000u);
+  EXPECT_GT(counts.culled - counts.frustum, test::rounds(3000u));
   EXPECT_LT(counts.undecided, counts.culled / 100);
-  EXPECT_GT(counts.held, 200u);
+  EXPECT_GT(counts.held, test::rounds(200u));
 }
 
 TEST(HostileScenes, TheSameSeedMakesTheSameScene) {

@@ -11,6 +11,7 @@
 
 #include "src/occlusion/box_depth_test.h"
 #include "tests/occlusion/random_views.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -264,7 +265,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
 
 TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
   int hidden = 0, refined = 0, open = 0, visible = 0;
-  for (std::uint64_t seed = 1; seed <= 6000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(6000u); ++seed) {
     Bed bed(seed);
     if (bed.image.place != BoxPlace::kOnBuffer) {
       EXPECT_EQ(bed.ask().visibility,
@@ -297,16 +298,16 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
     open += answer == Visibility::kPartial ? 1 : 0;
     visible += answer == Visibility::kVisible ? 1 : 0;
   }
-  EXPECT_GT(hidden, 500);
-  EXPECT_GT(refined, 300);
-  EXPECT_GT(open, 500);
-  EXPECT_GT(visible, 20);
+  EXPECT_GT(hidden, test::rounds(500));
+  EXPECT_GT(refined, test::rounds(300));
+  EXPECT_GT(open, test::rounds(500));
+  EXPECT_GT(visible, test::rounds(20));
 }
 
 // Checks the contract directly: a point of the box is hidden if the buffer is nearer than the point.
 TEST(BoxDepthTest, NeverHidesAPointThatTheBufferIsNotInFrontOf) {
   int hidden = 0, points = 0;
-  for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(3000u); ++seed) {
     Bed bed(seed);
     if (bed.image.place == BoxPlace::kOnBuffer) {
       const PlainBox plain(bed.view, bed.box);
@@ -337,8 +338,8 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheBufferIsNotInFrontOf) {
           << "seed " << seed;
     }
   }
-  EXPECT_GT(hidden, 500);
-  EXPECT_GT(points, 20000);
+  EXPECT_GT(hidden, test::rounds(500));
+  EXPECT_GT(points, test::rounds(20000));
 }
 
 TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {

@@ -10,6 +10,7 @@
 #include "sightline/comparison/centre_coverage.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/exact_coverage.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -305,7 +306,7 @@ TEST(ExactCoverage, TellsSurfacesGapsAndDepthsApart) {
   EXPECT_FALSE(hides({{{{0, -500, 8}, {0, 500, 8}, {4, 500, 8}, {4, -500, 8}}, false}}, 0.0));  // a back
 }
 
-constexpr std::uint64_t kScenes = 14000;
+constexpr std::uint64_t kScenes = test::rounds(14000);
 
 TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanItIs) {
   int covered = 0, failures = 0, across = 0;
@@ -333,8 +334,8 @@ TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanIt
       }
     });
   }
-  EXPECT_GT(covered, 20000);
-  EXPECT_GT(across, 2000);  // by several polygons together
+  EXPECT_GT(covered, test::rounds(20000));
+  EXPECT_GT(across, test::rounds(2000));  // by several polygons together
 }
 
 // Whether the rasteriser is expected to use a polygon in full: no sharp corner, not seen at a grazing angle,
@@ -394,7 +395,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
       }
     });
   }
-  EXPECT_GT(within, 20000);
+  EXPECT_GT(within, test::rounds(20000));
 }
 
 // There are no uncovered pixels along shared edges.
@@ -426,7 +427,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
       });
     }
   }
-  EXPECT_GT(within, 5000);
+  EXPECT_GT(within, test::rounds(5000));
 }
 
 TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthThere) {
@@ -466,7 +467,7 @@ TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthTher
       }
     });
   }
-  EXPECT_GT(covered, 50000);
+  EXPECT_GT(covered, test::rounds(50000));
 }
 
 }  // namespace

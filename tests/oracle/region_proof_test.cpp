@@ -10,6 +10,7 @@
 
 #include "oracle/split_mix.h"
 #include "tests/oracle/hand_made.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -251,7 +252,7 @@ void addWallAmongEyes(Scene& scene, MaterialId material, SplitMix& random) {
 }
 
 TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
-  constexpr std::uint64_t kScenes = 2000;
+  constexpr std::uint64_t kScenes = test::rounds(2000);
   constexpr int kLines = 400;
   int proofs = 0, seen = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
@@ -294,13 +295,13 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
       }
     }
   }
-  EXPECT_GT(proofs, 20);
-  EXPECT_GT(seen, 100);
+  EXPECT_GT(proofs, test::rounds(20));
+  EXPECT_GT(seen, test::rounds(100));
 }
 
 // Walls beside each other at several distances overlap or leave gaps, as seen from the region.
 TEST(RegionProof, NeverProvesInPartsWhatALineOfSightSees) {
-  constexpr std::uint64_t kScenes = 1000;
+  constexpr std::uint64_t kScenes = test::rounds(1000);
   constexpr int kLines = 400;
   int proofs_in_parts = 0, seen = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
@@ -333,14 +334,14 @@ TEST(RegionProof, NeverProvesInPartsWhatALineOfSightSees) {
       }
     }
   }
-  EXPECT_GT(proofs_in_parts, 20);
-  EXPECT_GT(seen, 100);
+  EXPECT_GT(proofs_in_parts, test::rounds(20));
+  EXPECT_GT(seen, test::rounds(100));
 }
 
 // No wall is wider than 0.3 m, and the target is 1 m wide, so it is seen past them. It is beside the region,
 // along the plane that ends it: there a line of sight is nearest to lines from places without eyes.
 TEST(RegionProof, NeverProvesByWallsThatAreSmallerThanTheTarget) {
-  constexpr std::uint64_t kScenes = 20000;
+  constexpr std::uint64_t kScenes = test::rounds(20000);
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     SplitMix random{seed};
     Setting s;

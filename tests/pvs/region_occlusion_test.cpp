@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/pvs/bake_scenes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::pvs {
 namespace {
@@ -327,7 +328,7 @@ Scene untidyScene(std::mt19937& random) {
 
 TEST(RegionOcclusion, HidesNothingThatALineSees) {
   std::size_t hidden = 0, asked = 0;
-  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint32_t seed = 1; seed <= test::rounds(30u); ++seed) {
     std::mt19937 random(seed);
     const Scene scene = untidyScene(random);
     const Panels panels = findPanels(scene.view());
@@ -590,7 +591,7 @@ TEST(RegionOcclusion, PanelsDoNotReachAroundTheEndOfAWall) {
 TEST(RegionOcclusion, HidesNothingThatALineSeesFromWithinSolids) {
   std::mt19937 random(5);
   int hidden = 0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < test::rounds(300); ++trial) {
     Scene scene = random() % 2 == 0 ? anyBlocks(random, 12) : rooms(3);
     const auto at = [&] { return 0.5 * static_cast<double>(random() % 24); };
     const auto box = [&] {
@@ -603,7 +604,7 @@ TEST(RegionOcclusion, HidesNothingThatALineSeesFromWithinSolids) {
       hidden += hides(scene, viewers, {.box = target}, {}, random() % 2 == 0 ? 0.0 : 0.3) ? 1 : 0;
     }
   }
-  EXPECT_GT(hidden, 20);
+  EXPECT_GT(hidden, test::rounds(20));
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <iterator>
+#include <span>
 
 #include "scenes/procedural.h"
 #include "src/pvs/bake/encode_sight.h"
 #include "tests/pvs/edited_scene.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -92,10 +95,11 @@ void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t s
   }
 }
 
-// So many edits of each kind of scene; SIGHTLINE_UPDATE_EDITS makes them more.
+// So many edits of each kind of scene, at least three, of which the last is undone; SIGHTLINE_UPDATE_EDITS
+// makes them more.
 int editsOf(int usual) {
   const char* more = std::getenv("SIGHTLINE_UPDATE_EDITS");
-  return more != nullptr ? std::max(usual, std::atoi(more)) : usual;
+  return std::max({3, test::rounds(usual), more != nullptr ? std::atoi(more) : 0});
 }
 
 void expectReuse(const Totals& totals) {
@@ -110,7 +114,7 @@ void expectReuse(const Totals& totals) {
 
 TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
   Totals totals;
-  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint32_t seed = 1; seed <= test::rounds(4u); ++seed) {
     judgeEdits(roomScene(seed), {.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05}, seed,
                editsOf(7), totals);
   }
@@ -139,7 +143,7 @@ TEST(Update, HasThePartsOfAFullBake) {
 
 TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
   Totals totals;
-  for (std::uint32_t seed = 11; seed <= 13; ++seed) {
+  for (std::uint32_t seed = 11; seed < 11 + test::rounds(3u); ++seed) {
     judgeEdits(roomScene(seed, 2),
                {.occlusion = BakeOcclusion::kFused,
                 .triangle_budget = 120,
@@ -155,19 +159,20 @@ TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
 // which one more object changes all over.
 TEST(Update, GivesTheBytesOfAFullBakeWhereNarrowingOrDividingIsAskedFor) {
   Totals totals;
-  const auto judge = [&](std::uint32_t seed, std::uint32_t narrowings, std::uint32_t divisions) {
-    judgeEdits(torn(roomScene(seed, 2), seed),
+  struct Asked {
+    std::uint32_t seed, narrowings, divisions;
+  };
+  const Asked all[] = {{38, 1, 2}, {37, 0, 1}, {39, 1, 0}};
+  for (const Asked& asked : std::span(all).first(test::rounds(std::size(all)))) {
+    judgeEdits(torn(roomScene(asked.seed, 2), asked.seed),
                {.occlusion = BakeOcclusion::kFused,
                 .triangle_budget = 120,
                 .max_depth = 2,
                 .near_distance = 0.05,
-                .divisions = divisions,
-                .narrowings = narrowings},
-               seed, editsOf(5), totals);
-  };
-  judge(37, 0, 1);
-  judge(38, 1, 2);
-  judge(39, 1, 0);
+                .divisions = asked.divisions,
+                .narrowings = asked.narrowings},
+               asked.seed, editsOf(5), totals);
+  }
   expectReuse(totals);
 }
 

@@ -5,13 +5,14 @@
 #include <random>
 #include <thread>
 
+#include "tests/support/rounds.h"
 #include "tests/tool/start_tool.h"
 
 namespace sightline::tool_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261;
-constexpr int kKills = 4;  // of each kind
+constexpr int kKills = test::rounds(4);  // of each kind
 
 void nap() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));

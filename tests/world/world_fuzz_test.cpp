@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/world/world_sight.h"
+#include "tests/support/rounds.h"
 #include "tests/world/hard_story.h"
 
 namespace sightline {
@@ -20,7 +21,7 @@ TEST(WorldFuzz, WhateverIsSeenIsKeptHoweverTheWorldIsChanged) {
   std::size_t seen = 0, culled = 0;
   const std::array<Vec3d, 4> bases{Vec3d(), Vec3d(20000, 0, -8000), Vec3d(0x1p30, 0x1p20, -0x1p30),
                                    Vec3d(0x1p44, 0, 0x1p40)};
-  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(12u); ++seed) {
     HardStory story(seed, bases[seed % bases.size()]);
     story.world.setOrigin(seed % 3 == 0 ? Vec3d() : story.base);
     WorldCuller every, first({.raster = {.width = 128, .height = 72}, .groups = 1}), sometimes, both;
@@ -49,8 +50,8 @@ TEST(WorldFuzz, WhateverIsSeenIsKeptHoweverTheWorldIsChanged) {
     }
     EXPECT_EQ(story.world.instances(), story.pieces.size());
   }
-  EXPECT_GT(seen, 500u);
-  EXPECT_GT(culled, 500u);
+  EXPECT_GT(seen, test::rounds(500u));
+  EXPECT_GT(culled, test::rounds(500u));
 }
 
 // What no line of sight from a point meets is in no picture from there either.
