@@ -12,6 +12,8 @@ namespace {
 
 // Pixels that a group must change for each unit of work, or it rests.
 constexpr double kMinGain = 0.3;
+// The same where only pixels count in which something is to be hidden. They are few, but worth more.
+constexpr double kMinNeededGain = 0.075;
 constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
 // What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest
 // views ends where the eye has travelled this fraction of the surface's distance for each view of the rest.
@@ -377,7 +379,8 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
 void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::uint64_t work) {
   stats_.gain += gain.nearer;
   group.rest->drawn_in = view_number_;
-  if (!(gain.nearer < kMinGain * static_cast<double>(work))) {
+  const double least = drawing_.targets.empty() ? kMinGain : kMinNeededGain;
+  if (!(gain.nearer < least * static_cast<double>(work))) {
     *group.rest = {.drawn_in = view_number_, .paid_in = view_number_};
     std::uint32_t& place = place_in_useful_[group.part];
     if (place == 0) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "scenes/procedural.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/hierarchy/hierarchy.h"
@@ -66,28 +67,68 @@ TEST(HidingSurfaces, AWallIsDrawnAndWhatStandsBeforeItIsNot) {
   EXPECT_GE(groups, std::size_t{kViews});
 }
 
-// A wall that has hidden nothing so far is found as soon as an object has been behind it for a while.
-TEST(HidingSurfaces, WhatComesToBeHiddenIsFound) {
-  Scene scene;
-  const MaterialId stone = addMaterial(scene, Opacity::kOpaque, true);
-  const ObjectId wall = addWall(scene, stone, -10.0f, 2.0f, 8.0f, -3.0f, 3.0f);
-  const ObjectId panel = addWall(scene, stone, -20.0f, -1.0f, 1.0f, -1.0f, 1.0f);
-  const ObjectId other_wall = addWall(scene, stone, -10.0f, -9.0f, -4.0f, -3.0f, 3.0f);
-  addWall(scene, stone, -20.0f, -15.0f, -13.0f, -1.0f, 1.0f);  // behind it from the start
-  const Prepared prepared(scene);
-  Culler culler(prepared.scene(), depthPyramid());
-  View view = hand_made::frontView();
-  culler.cull(view);
-  const std::vector<ObjectId> at_first(culler.visible().begin(), culler.visible().end());
-  EXPECT_EQ(at_first, (std::vector{wall, panel, other_wall}));
-  // To the right, until the panel is behind the first wall, and then no farther.
-  int views = 0;
-  for (; views < 600 && std::ranges::count(culler.visible(), panel) > 0; ++views) {
-    view.eye.x = std::min(view.eye.x + 0.1, 9.0);
-    culler.cull(view);
+// A wall with so many teeth along its upper border.
+ObjectId addTeeth(Scene& scene, MaterialId material, float z, float x0, float x1, float y0, float y1,
+                  int teeth) {
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < teeth; ++i) {
+    const float width = (x1 - x0) / static_cast<float>(teeth), a = x0 + width * static_cast<float>(i),
+                b = x0 + width * static_cast<float>(i + 1);
+    const Vec3f p(a, y0, z), q(b, y0, z), r(b, y1, z), s(a, y1, z), top(0.5f * (a + b), y1 + 0.05f, z);
+    corners.insert(corners.end(), {p, q, r, p, r, s, s, r, top});
   }
-  EXPECT_LT(views, 600);
-  EXPECT_GE(view.eye.x, 5.0) << "it could still be seen";
+  return hand_made::addTriangles(scene, material, corners);
+}
+
+// However much is drawn to hide something else, a wall that has hidden nothing so far is found once a few
+// objects have been behind it for a while.
+TEST(HidingSurfaces, WhatComesToBeHiddenIsFound) {
+  for (const int teeth : {1, 60, 100, 200}) {
+    for (const int panels : {1, 5, 10}) {
+      Scene scene;
+      const MaterialId stone = addMaterial(scene, Opacity::kOpaque, true);
+      const ObjectId left = addTeeth(scene, stone, -10.0f, -9.5f, 1.5f, -9.0f, 8.0f, teeth);
+      addWall(scene, stone, -30.0f, -20.0f, 0.0f, -15.0f, 15.0f);  // behind it in all views
+      const ObjectId right = addWall(scene, stone, -10.0f, 2.5f, 9.0f, -4.0f, 4.0f);
+      for (int i = 0; i < panels; ++i) {
+        const float x = 16.0f + 0.6f * static_cast<float>(i % 5),
+                    y = -8.0f + 2.0f * static_cast<float>(i / 5);
+        addWall(scene, stone, -80.0f - 0.01f * static_cast<float>(i), x, x + 0.5f, y, y + 1.5f);
+      }
+      const Prepared prepared(scene);
+      Culler culler(prepared.scene(), depthPyramid({.focus = {.windows = 0}}));
+      View view = hand_made::frontView();
+      culler.cull(view);
+      EXPECT_GT(culler.visible().size(), 2u);
+      // To the right, until the panels are behind the wall there, and then no farther.
+      int views = 0;
+      for (; views < 600 && (view.eye.x < 1.2 || culler.visible().size() > 2); ++views) {
+        view.eye.x = std::min(view.eye.x + 0.02, 1.2);
+        culler.cull(view);
+      }
+      const std::vector<ObjectId> kept(culler.visible().begin(), culler.visible().end());
+      EXPECT_EQ(kept, (std::vector{left, right})) << teeth << " teeth, " << panels << " panels";
+    }
+  }
+}
+
+// Where nearly all that a view shows is new, what was of no use in the last one is drawn too.
+TEST(HidingSurfaces, AFastTurnKeepsAboutWhatAViewAloneKeeps) {
+  const Result<Scene> scene = makeDemoScene("demo:building");
+  ASSERT_TRUE(scene.has_value());
+  const Prepared prepared(*scene);
+  Culler culler(prepared.scene(), depthPyramid());
+  Culler alone(prepared.scene(), depthPyramid({.temporal_coherence = false}));
+  const CameraPath& path = scene->paths[0];
+  std::size_t kept = 0, kept_alone = 0;
+  for (std::size_t frame = 0; frame < path.frames.size(); frame += 10) {
+    const View view = path.view(frame, scene->origin);
+    culler.cull(view);
+    alone.cull(view);
+    kept += culler.visible().size();
+    kept_alone += alone.visible().size();
+  }
+  EXPECT_LT(kept, kept_alone * 5 / 4);
 }
 
 }  // namespace

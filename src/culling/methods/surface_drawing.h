@@ -37,6 +37,8 @@ class SurfaceDrawer {
     news_.clear();
     bounds_ = scene.object_bounds;
     tried_ = DoubtMemory(surfaces_ != nullptr ? bounds_.size() : 0);
+    views_ = 0;
+    owed_ = 0.0;
     nearest_.reset();
     if (surfaces_ != nullptr) {
       nearest_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -96,16 +98,19 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
     removeHidden(hidden);
-    const double worth = kWorkForHidden * static_cast<double>(hidden.size()) +
-                         kWorkForTry * static_cast<double>(to_try_.size());
+    owed_ += kWorkForHidden * static_cast<double>(hidden.size()) +
+             kWorkForTry * static_cast<double>(to_try_.size());
     appendBounds(to_try_, hidden);
-    if (!hidden.empty() && worth > kLeastWorth * built_work_) {
-      aimAt(buffer, hidden, worth, frame.last_visible, whatIsLeft(false));
-      built_work_ += count(buffer);
-      work_ = built_work_;
+    if (hidden.empty() || owed_ <= kLeastWorth * built_work_) {
+      to_try_.clear();
+      return;
     }
+    aimAt(buffer, hidden, owed_, frame.last_visible, whatIsLeft(false));
+    owed_ = 0.0;
+    built_work_ += count(buffer);
+    work_ = built_work_;
   }
-  static constexpr std::size_t kMostHidden = 128;
+  static constexpr std::size_t kMostHidden = 512;
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
@@ -177,7 +182,8 @@ class SurfaceDrawer {
   static constexpr std::uint32_t kViewsBetweenTries = 4;
   // So much is drawn for each box that was hidden in the last view or is new, and for each of these objects.
   static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
-  // They are not aimed at where all of that is less than this part of what was drawn before.
+  // They are not aimed at before all of that, added up over the views since it was done last, is more than
+  // this part of what was drawn before.
   static constexpr double kLeastWorth = 0.5;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
@@ -207,14 +213,14 @@ class SurfaceDrawer {
     }
     // What comes into view is not counted in the budget, but for one of time.
     SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
-    if (aims_) {
+    drawing.draw_resting = news_.size() * kStill > not_hidden.size();
+    if (aims_ && !drawing.draw_resting) {
       targets_.clear();
       appendBounds(news_, targets_);
       aimAt(buffer, targets_, kWorkForHidden * static_cast<double>(news_.size()), not_hidden, drawing);
       count(buffer);
       return true;
     }
-    drawing.draw_resting = news_.size() * kStill > not_hidden.size();
     draw(buffer, news_, ViewStep::kSame, drawing);
     count(buffer);
     return true;
@@ -309,6 +315,7 @@ class SurfaceDrawer {
   DoubtMemory tried_{0};          // kept objects that were aimed at
   std::vector<ObjectId> to_try_;  // those that are in this frame
   std::uint32_t views_ = 0;
+  double owed_ = 0.0;  // work for what was not aimed at yet, see kLeastWorth
 };
 
 }  // namespace sightline::culling
