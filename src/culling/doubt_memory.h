@@ -10,8 +10,9 @@
 
 namespace sightline::culling {
 
-// An object that a finer depth buffer hid is likely to be hidden by one again, and attracts windows. One that
-// could be seen in it all the same rests, for longer each time: some views pass before it is looked at again.
+// An object that was hidden when more was drawn for it, in a finer depth buffer say, is likely to be hidden
+// again. One that could be seen all the same rests, for longer each time: some views pass before it is looked
+// at again.
 class DoubtMemory {
  public:
   static constexpr std::uint32_t kCertain = 256;
@@ -33,6 +34,8 @@ class DoubtMemory {
   // The object shows in many pixels, so no finer buffer hides it.
   void clear(ObjectId object) { set(object, kClearRest, std::max(of(object).halvings, kUntried)); }
   void hidden(ObjectId object) { set(object, 0, 0); }
+  // The object is one that was never looked at.
+  void forget(ObjectId object) { set(object, 0, kUntried); }
   // A finer buffer did not hide the object.
   void seen(ObjectId object) {
     const std::uint32_t halvings = std::min(of(object).halvings + 1, kMaxHalvings);

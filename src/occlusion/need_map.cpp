@@ -21,7 +21,7 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 using Pixels = hn::CappedTag<float, kSquare>;
 inline constexpr Pixels kPixels;
 // A lane for each square of a row.
-using Squares = hn::CappedTag<float, 16>;
+using Squares = hn::CappedTag<float, NeedMap::kVector>;
 inline constexpr Squares kSquares;
 
 // Whether some value of the target from pixel (x, y0) on, in the rows before y1 of a square, is less than
@@ -79,21 +79,18 @@ namespace {
 HWY_EXPORT(closeSquares);
 HWY_EXPORT(openBehind);
 
-constexpr std::int32_t kVector = 16;  // squares
-
 }  // namespace
 
 void NeedMap::clear(const DepthTarget& target) {
   const auto squares = [](std::uint32_t pixels) {
     return (static_cast<std::int32_t>(pixels) + kSize - 1) / kSize;
   };
-  columns_ = squares(target.width);
-  rows_ = squares(target.height);
-  stride_ = columns_ + kVector;
+  stride_ = squares(target.width) + kVector;
+  const std::size_t count = at(squares(target.height));
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  farthest_.assign(at(rows_), kInfinity);
-  nearest_.assign(at(rows_), -kInfinity);
-  open_.assign(at(rows_), kInfinity);
+  farthest_.assign(count, kInfinity);
+  nearest_.assign(count, -kInfinity);
+  open_.assign(count, kInfinity);
 }
 
 void NeedMap::add(const PixelRectangle& rectangle, float nearest) {

@@ -9,11 +9,12 @@
 
 namespace sightline::occlusion {
 
-// In squares of pixels, for boxes that are to be hidden. What is before none of them, or only where all that
-// there is of them is hidden, is of no use.
+// Squares of pixels in which boxes are to be hidden. A surface that is before none of them, or only where all
+// that there is of them is hidden, is of no use. All rectangles lie within the target.
 class NeedMap {
  public:
-  static constexpr std::int32_t kSize = 8;  // pixels along each side of a square
+  static constexpr std::int32_t kSize = 8;     // pixels along each side of a square
+  static constexpr std::int32_t kVector = 16;  // squares that are looked at together, at most
 
   // Needs nothing.
   void clear(const DepthTarget& target);
@@ -38,7 +39,7 @@ class NeedMap {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(stride_);
   }
 
-  std::int32_t columns_ = 0, rows_ = 0, stride_ = 0;  // stride: columns, and room for a vector
+  std::int32_t stride_ = 0;  // squares of a row, and room for a vector
   std::vector<float> farthest_, nearest_;
   std::vector<float> open_;  // the farthest box where some pixel does not hide all, else infinite
 };

@@ -393,8 +393,8 @@ void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::ui
   }
 }
 
-// Twice as long as the last time. Groups that begin to rest in the same view come back in different ones, or
-// drawing them all would make one view slow.
+// A group that rests again does so twice as long as the last time. Groups that begin to rest in the same view
+// come back in different ones, or drawing them all would make one view slow.
 void SurfaceRaster::rest(const Group& group) {
   Rest& rest = *group.rest;
   const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;

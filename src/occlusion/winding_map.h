@@ -40,9 +40,10 @@ class WindingMap {
   // In how many pixels of a rectangle of the target a surface that is nowhere nearer than this reciprocal
   // depth may gain something; or more.
   std::uint32_t wanted(const PixelRectangle& rectangle, float nearest) {
-    return needs_ != nullptr           ? needs_->pixels(rectangle, nearest)
-           : hides(rectangle, nearest) ? 0u
-                                       : static_cast<std::uint32_t>(rectangle.area());
+    if (needs_ != nullptr) {
+      return needs_->pixels(rectangle, nearest);
+    }
+    return hides(rectangle, nearest) ? 0u : static_cast<std::uint32_t>(rectangle.area());
   }
 
   // Draws groups one after the other: covered pixels get the group's depth where that is nearer. Different

@@ -18,8 +18,9 @@ struct OpacityMapMethodSettings {
   // Until it is known, the coverage ratio stays. Outlives the method; null: triangle_us counts.
   const MeasuredRenderer* renderer = nullptr;
   SurfaceUse surfaces = SurfaceUse::kNone;
-  SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
-  double budget_us = 0.0;    // see DepthPyramidMethodSettings
+  // Of surfaces. `step`, `targets` and `useful_only` are set anew in each frame.
+  SurfaceDrawing drawing{};
+  double budget_us = 0.0;  // see DepthPyramidMethodSettings
 };
 
 inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};

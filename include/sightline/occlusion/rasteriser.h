@@ -97,7 +97,7 @@ struct SurfaceStats {
   std::uint32_t groups = 0;                 // of clusters that were drawn together
   std::uint32_t edges = 0;                  // of their boundaries
   std::uint32_t work = 0;                   // what they cost, as SurfaceDrawing::budget counts it
-  std::uint32_t gain = 0;                   // pixels that became nearer by an eighth or more
+  std::uint32_t gain = 0;                   // pixels that became nearer by an eighth or more, before targets
   bool complete = true;                     // the budget was enough
 };
 

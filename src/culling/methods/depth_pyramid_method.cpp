@@ -31,6 +31,7 @@ class DepthPyramidMethod final : public CullingMethod {
     surfaces_.prepare(scene);
     pyramid_.emplace(DepthPyramidSettings{settings_.raster});
     surfaces_.prepareBuffer(*pyramid_);
+    turn_ = 0;
     own_occluders_ = 0;
     focus_.reset();
     if (settings_.focus.windows > 0 && settings_.focus.magnification > 1.0 && drawsBodies()) {

@@ -26,7 +26,10 @@ class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
   SurfaceDrawer(SurfaceUse use, const SurfaceDrawing& drawing, double budget_us, const CoverageRule* coverage)
-      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing), budget_us_(budget_us) {}
+      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing), budget_us_(budget_us) {
+    drawing_.targets = {};
+    drawing_.useful_only = false;
+  }
 
   void prepare(const CullingScene& scene) {
     surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
@@ -87,7 +90,7 @@ class SurfaceDrawer {
                      const RemoveHidden& removeHidden) {
     aims_ = true;
     targets_ = hidden;
-    listTries(frame.last_visible);
+    listTries(frame.last_visible);  // before findNews() forgets what was new in the last view
     // What several boxes or a finer buffer hid, the box as a whole does not say.
     findNews(last_kept_, frame.last_visible);
     appendBounds(news_, targets_);
@@ -107,10 +110,11 @@ class SurfaceDrawer {
     }
     aimAt(buffer, hidden, owed_, frame.last_visible, whatIsLeft(false));
     owed_ = 0.0;
-    built_work_ += count(buffer);
-    work_ = built_work_;
+    const double more = count(buffer);
+    built_work_ += more;
+    work_ += more;
   }
-  static constexpr std::size_t kMostHidden = 512;
+  static constexpr std::size_t kMostHidden = 256;
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
@@ -236,9 +240,10 @@ class SurfaceDrawer {
   void listTries(std::span<const ObjectId> kept) {
     tried_.beginView();
     for (const ObjectId object : news_) {
-      tried_.hidden(object);
+      tried_.forget(object);
     }
-    if (!news_.empty() || ++views_ % kViewsBetweenTries == 0) {
+    ++views_;
+    if (!news_.empty() || views_ % kViewsBetweenTries == 0) {
       for (const ObjectId object : kept) {
         if (!tried_.rests(object)) {
           to_try_.push_back(object);
