@@ -114,7 +114,7 @@ class SurfaceDrawer {
     built_work_ += more;
     work_ += more;
   }
-  static constexpr std::size_t kMostHidden = 256;
+  static constexpr std::size_t kMostHidden = 128;
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
@@ -188,7 +188,7 @@ class SurfaceDrawer {
   static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
   // They are not aimed at before all of that, added up over the views since it was done last, is more than
   // this part of what was drawn before.
-  static constexpr double kLeastWorth = 0.5;
+  static constexpr double kLeastWorth = 1.5;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
