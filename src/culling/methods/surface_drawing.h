@@ -19,9 +19,9 @@
 
 namespace sightline::culling {
 
-// Draws the surfaces of the objects that the last frame kept and, where these do not hide much of what comes
-// into view, of that; after a jump of those in the frustum, first of the nearest ones, then of what these do
-// not hide.
+// Draws the surfaces of the objects that the last frame kept, all of them or those that hide something, and,
+// where these do not hide much of what comes into view, of that; after a jump of those in the frustum, first of
+// the nearest ones, then of what these do not hide.
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
