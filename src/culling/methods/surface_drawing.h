@@ -20,8 +20,8 @@
 namespace sightline::culling {
 
 // Draws the surfaces of the objects that the last frame kept, all of them or those that hide something, and,
-// where these do not hide much of what comes into view, of that; after a jump of those in the frustum, first of
-// the nearest ones, then of what these do not hide.
+// where these do not hide much of what comes into view, of that; after a jump of those in the frustum, first
+// of the nearest ones, then of what these do not hide.
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
@@ -83,11 +83,11 @@ class SurfaceDrawer {
   // The same in a view that follows the last one for which this buffer was drawn: only what hides something
   // is drawn. hidden: boxes that the buffer hid in that view, at most kMostHidden. First comes what hid most
   // there. What is left of the boxes after that, and objects that were kept and may be hidden by now, are
-  // then aimed at with what else there is. removeHidden(boxes) removes those that the buffer, as it is,
+  // then aimed at with what else there is. remove_hidden(boxes) removes those that the buffer, as it is,
   // hides.
   template <typename Buffer, typename RemoveHidden>
   void drawWhatHides(Buffer& buffer, const CullingFrame& frame, std::vector<Box>& hidden,
-                     const RemoveHidden& removeHidden) {
+                     const RemoveHidden& remove_hidden) {
     aims_ = true;
     targets_ = hidden;
     listTries(frame.last_visible);  // before findNews() forgets what was new in the last view
@@ -100,7 +100,7 @@ class SurfaceDrawer {
     draw(buffer, {}, ViewStep::kNext, drawing);
     built_work_ = count(buffer);
     work_ += built_work_;
-    removeHidden(hidden);
+    remove_hidden(hidden);
     owed_ += kWorkForHidden * static_cast<double>(hidden.size()) +
              kWorkForTry * static_cast<double>(to_try_.size());
     appendBounds(to_try_, hidden);
