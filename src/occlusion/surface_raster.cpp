@@ -12,7 +12,8 @@ namespace {
 
 // Pixels that a group must change for each unit of work, or it rests.
 constexpr double kMinGain = 0.3;
-// The same where only pixels count in which something is to be hidden. They are few, but worth more.
+// It has to change so many where only pixels count in which something is to be hidden: these are few, but
+// worth more.
 constexpr double kMinNeededGain = 0.075;
 constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
 // What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest

@@ -123,7 +123,7 @@ class SurfaceRaster {
   std::uint32_t rested_ = 0;        // groups that began to rest in this view
   Vec3d eye_;                       // of the last view
   double travel_ = 0.0;             // of the eye, from view to view of the set, or more; metres
-  // Of the part that addPart() was called for: its number, and Group::distance.
+  // addPart() sets these to the number of its part, and to what Group::distance is for it.
   std::uint32_t part_ = 0;
   double part_distance_ = 0.0;
   // Parts of which something paid in this view and in the one before; and where a part is in the first list,

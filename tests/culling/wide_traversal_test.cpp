@@ -203,7 +203,7 @@ TEST(WideTraversal, TellsWhatTheBufferHid) {
     }
   }
   EXPECT_GT(culled, 200u);
-  // Of boxes that reach the near plane nothing is told.
+  // The traversal tells nothing of boxes that reach the near plane.
   EXPECT_GT(told, culled * 9 / 10);
 }
 

@@ -33,7 +33,7 @@ struct DepthPyramidMethodSettings {
   // six to nine frames.
   bool temporal_coherence = true;
   SurfaceUse surfaces = SurfaceUse::kAlone;
-  // Of surfaces. `step`, `targets` and `useful_only` are set anew in each frame.
+  // How surfaces are drawn; `step`, `targets` and `useful_only` are set anew in each frame.
   SurfaceDrawing drawing{};
   // More than 0: so many surfaces are drawn that a frame takes about so many microseconds, as far as drawing
   // less can do that; at most those of drawing.budget, and as many again where many objects come into view.

@@ -80,11 +80,10 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
   }
-  // The same in a view that follows the last one for which this buffer was drawn: only what hides something
-  // is drawn. hidden: boxes that the buffer hid in that view, at most kMostHidden. First comes what hid most
-  // there. What is left of the boxes after that, and objects that were kept and may be hidden by now, are
-  // then aimed at with what else there is. remove_hidden(boxes) removes those that the buffer, as it is,
-  // hides.
+  // Draws only what hides something, in a view that follows the last one for which this buffer was drawn.
+  // hidden: boxes that the buffer hid in that view, at most kMostHidden. First comes what hid most there.
+  // What is left of the boxes after that, and objects that were kept and may be hidden by now, are then aimed
+  // at with what else there is. remove_hidden(boxes) removes those that the buffer, as it is, hides.
   template <typename Buffer, typename RemoveHidden>
   void drawWhatHides(Buffer& buffer, const CullingFrame& frame, std::vector<Box>& hidden,
                      const RemoveHidden& remove_hidden) {
