@@ -32,6 +32,8 @@ class WideTraversal::Task {
   void visit(std::span<const Entry> entries);
   // Visits all nodes of found.stack, and those below them.
   void visitAll();
+  // Tests objects, and appends those that the buffer does not hide to found.kept.
+  void test(std::span<const ObjectId> objects, std::span<const std::uint32_t> child_of_object);
 
  private:
   // Lists the children of a node that are to be tested.
@@ -108,11 +110,44 @@ void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& opti
   hidden_.drainInto(hidden_children_);
 }
 
+void WideTraversal::testAgain(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
+                              std::vector<ObjectId>& objects, const ParallelFor& parallel_for) {
+  const std::size_t count = objects.size();
+  const auto tasks =
+      static_cast<std::uint32_t>(std::min<std::size_t>((count + kBatch - 1) / kBatch, kMaxRanges));
+  const auto testPart = [&](std::uint32_t begin, std::uint32_t end) {
+    const std::size_t first = count * begin / tasks;
+    if (begin < end) {
+      Task(*this, buffer, options, found_[begin])
+          .test(std::span(objects).subspan(first, count * end / tasks - first), child_of_object_);
+    }
+  };
+  // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
+  parallel_for(tasks, [&testPart](std::uint32_t begin, std::uint32_t end) { testPart(begin, end); });
+  for (std::uint32_t i = 0; i < tasks; ++i) {
+    take(found_[i], stats);
+  }
+  objects.clear();
+  visible_.drainInto(objects);
+  hidden_.drainInto(hidden_children_);
+}
+
 void WideTraversal::appendHidden(std::size_t most, std::size_t turn, std::vector<Box>& boxes) const {
   const std::size_t all = hidden_children_.size(), count = std::min(most, all);
   for (std::size_t i = 0; i < count; ++i) {
     boxes.push_back(wide_.boxes[hidden_children_[(i * all / count + turn) % all].value]);
   }
+}
+
+std::vector<std::uint32_t> WideTraversal::childrenByObject(const hierarchy::WideHierarchy& wide,
+                                                           std::size_t objects) {
+  std::vector<std::uint32_t> children(objects);
+  for (const WideNode& node : wide.nodes) {
+    for (std::uint32_t child = node.first_child + node.node_count; child < node.child_end; ++child) {
+      children[wide.object[child].value] = child;
+    }
+  }
+  return children;
 }
 
 std::vector<Vec3f> WideTraversal::centresOf(std::span<const Box> boxes) {
@@ -191,6 +226,15 @@ void WideTraversal::Task::visitAll() {
       testObjects();
     }
   }
+  testObjects();
+}
+
+void WideTraversal::Task::test(std::span<const ObjectId> objects,
+                               std::span<const std::uint32_t> child_of_object) {
+  for (const ObjectId object : objects) {
+    found_.objects.push_back({child_of_object[object.value], object.value, 0});
+  }
+  found_.objects_tested += static_cast<std::uint32_t>(objects.size());
   testObjects();
 }
 

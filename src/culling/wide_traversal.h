@@ -24,6 +24,7 @@ class WideTraversal {
   WideTraversal(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
         wide_(hierarchy::collapse(hierarchy, object_bounds)),
+        child_of_object_(childrenByObject(wide_, object_bounds.size())),
         object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
         hidden_(wide_.boxes.size()),
@@ -36,6 +37,11 @@ class WideTraversal {
   // it is kept while it is in the view. The result does not depend on parallel_for.
   void run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
            std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
+
+  // Removes from the objects that run() appended those that the buffer hides, now that more is drawn. All of
+  // them are tested alone. The result does not depend on parallel_for.
+  void testAgain(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
+                 std::vector<ObjectId>& objects, const ParallelFor& parallel_for = serialFor);
 
   // Appends boxes of nodes and objects that the depth buffer hid in the last run, at most `most` of them.
   // Where there are more they are spread over all of them, others in each turn.
@@ -80,6 +86,9 @@ class WideTraversal {
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
+  // The index of the child that each object is.
+  static std::vector<std::uint32_t> childrenByObject(const hierarchy::WideHierarchy& wide,
+                                                     std::size_t objects);
   static std::vector<Vec3f> centresOf(std::span<const Box> boxes);
   // Adds the results of a task to those of the view, and clears them.
   void take(Found& found, CullStats& stats);
@@ -87,6 +96,7 @@ class WideTraversal {
 
   const Hierarchy& hierarchy_;
   hierarchy::WideHierarchy wide_;
+  std::vector<std::uint32_t> child_of_object_;
   std::size_t object_count_;
   ObjectBits visible_;
   // Children, in place of objects, that the buffer hid in this run, and in ascending order in the last one.

@@ -207,6 +207,43 @@ TEST(WideTraversal, TellsWhatTheBufferHid) {
   EXPECT_GT(told, culled * 9 / 10);
 }
 
+TEST(WideTraversal, RemovesWhatIsHiddenOnceMoreIsDrawn) {
+  std::size_t before = 0, after = 0;
+  for (const test::Family& family : test::kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      Bed bed(family, seed, 700);
+      const OccluderSet set = test::setOf(bed.scene.polygons);
+      const std::vector<OccluderId> all = test::all(set);
+      bed.pyramid.build(bed.scene.view, set, std::span(all).first(all.size() / 2));
+      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+      WideTraversal traversal(bvh, bed.boxes), cut(bvh, bed.boxes);
+      Answer answer = traversed(traversal, bed.pyramid), in_pieces = traversed(cut, bed.pyramid);
+      std::vector<ObjectId> expected = answer.kept;
+      const std::uint32_t asked = answer.stats.objects_tested + static_cast<std::uint32_t>(expected.size());
+      before += expected.size();
+      bed.pyramid.draw(set, std::span(all).subspan(all.size() / 2));
+      bed.pyramid.finish();
+      std::erase_if(expected, [&](ObjectId object) {
+        return bed.pyramid.classify(bed.boxes[object.value]) == Visibility::kHidden;
+      });
+      after += expected.size();
+      const TraversalOptions options{.temporal_coherence = false};
+      traversal.testAgain(bed.pyramid, options, answer.stats, answer.kept);
+      EXPECT_EQ(answer.kept, expected) << family.name << ", seed " << seed;
+      EXPECT_EQ(answer.stats.objects_tested, asked);
+      cut.testAgain(bed.pyramid, options, in_pieces.stats, in_pieces.kept, forPiecesBackwards);
+      EXPECT_EQ(in_pieces.kept, expected) << "threads change it";
+      std::vector<Box> hidden;
+      traversal.appendHidden(10000, 0, hidden);
+      for (const Box& box : hidden) {
+        EXPECT_EQ(bed.pyramid.classify(box), Visibility::kHidden);
+      }
+    }
+  }
+  EXPECT_GT(after, 1000u);
+  EXPECT_GT(before - after, 100u);
+}
+
 TEST(WideTraversal, WithoutObjectsARangeMayBeEmpty) {
   const Bed bed(test::kFamilies[0], 1, 0);
   const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});

@@ -63,14 +63,7 @@ class DepthPyramidMethod final : public CullingMethod {
     // With surfaces most time goes into drawing, and testing everything costs little.
     const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
     const culling::TraversalOptions options = culling::optionsOf(frame, skips);
-    const auto ask = [&](CullStats& counts, std::vector<ObjectId>& not_hidden) {
-      traversal_->run(*pyramid_, options, counts, not_hidden, *frame.parallel_for);
-    };
-    const auto finish = [&] {
-      work_ += pyramid_->surfaceStats().work;
-      pyramid_->finish(*frame.parallel_for);
-    };
-    surfaces_.traverse(*pyramid_, stats, visible, finish, ask);
+    surfaces_.traverse(*pyramid_, stats, visible, Asking{*this, frame, options});
     if (focus_ && frame.test_objects) {
       focus_->refine(*pyramid_, frame, surfaces_, work_, stats, surfaces_.changesFast(), visible);
     }
@@ -128,27 +121,38 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
+  // Asks what the buffer does not hide.
+  struct Asking {
+    DepthPyramidMethod& method;
+    const CullingFrame& frame;
+    const culling::TraversalOptions& options;
+
+    void all(CullStats& stats, std::vector<ObjectId>& visible) {
+      method.traversal_->run(*method.pyramid_, options, stats, visible, *frame.parallel_for);
+    }
+    // Objects are tested one by one if that is less work than to ask for all anew.
+    void again(CullStats& stats, std::vector<ObjectId>& visible) {
+      method.work_ += method.pyramid_->surfaceStats().work;
+      method.pyramid_->finish(*frame.parallel_for);
+      if (options.test_objects && visible.size() <= stats.nodes_tested + stats.objects_tested) {
+        method.traversal_->testAgain(*method.pyramid_, options, stats, visible, *frame.parallel_for);
+      } else {
+        visible.clear();
+        all(stats, visible);
+      }
+    }
+  };
+
   void drawSurfaces(const CullingFrame& frame) {
     hidden_.clear();
     if (settings_.temporal_coherence && !frame.jumped && surfaces_.draws()) {
-      traversal_->appendHidden(culling::SurfaceDrawer::kMostHidden, turn_++, hidden_);
+      traversal_->appendHidden(culling::HidingAims::kMostHidden, turn_++, hidden_);
     }
     if (hidden_.empty()) {
       surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
       return;
     }
-    surfaces_.drawWhatHides(*pyramid_, frame, hidden_, [&](std::vector<Box>& boxes) {
-      pyramid_->finish(*frame.parallel_for);
-      answers_.resize(std::max(answers_.size(), boxes.size()));
-      pyramid_->classify(boxes, answers_, {.plain_from = 0});
-      std::size_t left = 0;
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (answers_[i].visibility != Visibility::kHidden) {
-          boxes[left++] = boxes[i];
-        }
-      }
-      boxes.resize(left);
-    });
+    surfaces_.drawWhatHides(*pyramid_, hidden_, frame.last_visible);
   }
 
   DepthPyramidMethodSettings settings_;

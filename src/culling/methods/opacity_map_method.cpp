@@ -65,9 +65,7 @@ class OpacityMapMethod final : public CullingMethod {
                       visible);
       return;
     }
-    surfaces_.traverse(
-        *map_, stats, visible, [&] { map_->finish(); },
-        [&](CullStats& counts, std::vector<ObjectId>& not_hidden) { ask(frame, counts, not_hidden); });
+    surfaces_.traverse(*map_, stats, visible, Asking{*this, frame});
   }
 
   void finish(CullStats& stats) override {
@@ -117,12 +115,22 @@ class OpacityMapMethod final : public CullingMethod {
   std::optional<double> triangleUs() const {
     return settings_.renderer != nullptr ? settings_.renderer->triangleUs() : settings_.triangle_us;
   }
-  // Appends the objects that the map does not hide.
-  void ask(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) {
-    const auto classify = [this](const TraversalBox& asked) { return map_->classify(asked.box); };
-    traversal_->run(frame.frustum, culling::optionsOf(frame, false), culling::AskAll{classify}, stats,
-                    visible);
-  }
+  // Asks what the map does not hide.
+  struct Asking {
+    OpacityMapMethod& method;
+    const CullingFrame& frame;
+
+    void all(CullStats& stats, std::vector<ObjectId>& visible) {
+      const auto classify = [this](const TraversalBox& asked) { return method.map_->classify(asked.box); };
+      method.traversal_->run(frame.frustum, culling::optionsOf(frame, false), culling::AskAll{classify},
+                             stats, visible);
+    }
+    void again(CullStats& stats, std::vector<ObjectId>& visible) {
+      method.map_->finish();
+      visible.clear();
+      all(stats, visible);
+    }
+  };
 
   OpacityMapMethodSettings settings_;
   culling::SurfaceDrawer surfaces_;

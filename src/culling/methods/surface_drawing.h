@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sightline/culling/culling_method.h"
-#include "src/culling/doubt_memory.h"
+#include "src/culling/hiding_aims.h"
 #include "src/culling/last_view.h"
 #include "src/culling/nearest_objects.h"
 #include "src/culling/timed_budget.h"
@@ -38,10 +38,7 @@ class SurfaceDrawer {
     timed_ = TimedBudget(budget_us_);
     last_kept_.clear();
     news_.clear();
-    bounds_ = scene.object_bounds;
-    tried_ = DoubtMemory(surfaces_ != nullptr ? bounds_.size() : 0);
-    views_ = 0;
-    owed_ = 0.0;
+    aims_ = surfaces_ != nullptr ? HidingAims(scene.object_bounds) : HidingAims();
     nearest_.reset();
     if (surfaces_ != nullptr) {
       nearest_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -66,8 +63,7 @@ class SurfaceDrawer {
     work_ = built_work_ = 0.0;
     groups_ = edges_ = 0;
     in_frustum_.clear();
-    to_try_.clear();
-    aims_ = false;
+    aims_.beginView();
     jumped_ = frame.jumped;
     more_in_frustum_ = draws() && frame.jumped &&
                        !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
@@ -81,61 +77,35 @@ class SurfaceDrawer {
     work_ += built_work_;
   }
   // Draws only what hides something, in a view that follows the last one for which this buffer was drawn.
-  // hidden: boxes that the buffer hid in that view, at most kMostHidden. First comes what hid most there.
-  // What is left of the boxes after that, and objects that were kept and may be hidden by now, are then aimed
-  // at with what else there is. remove_hidden(boxes) removes those that the buffer, as it is, hides.
-  template <typename Buffer, typename RemoveHidden>
-  void drawWhatHides(Buffer& buffer, const CullingFrame& frame, std::vector<Box>& hidden,
-                     const RemoveHidden& remove_hidden) {
-    aims_ = true;
-    targets_ = hidden;
-    listTries(frame.last_visible);  // before findNews() forgets what was new in the last view
+  // hidden: boxes that the buffer hid in that view, at most HidingAims::kMostHidden. First comes what hid
+  // most there.
+  template <typename Buffer>
+  void drawWhatHides(Buffer& buffer, std::span<const Box> hidden, std::span<const ObjectId> last_visible) {
     // What several boxes or a finer buffer hid, the box as a whole does not say.
-    findNews(last_kept_, frame.last_visible);
-    appendBounds(news_, targets_);
+    findNews(last_kept_, last_visible);
+    aims_.aimAtHidden(hidden, news_);
     SurfaceDrawing drawing = whatIsLeft(false);
-    drawing.targets = targets_;
+    drawing.targets = aims_.boxes();
     drawing.useful_only = true;
     draw(buffer, {}, ViewStep::kNext, drawing);
     built_work_ = count(buffer);
     work_ += built_work_;
-    remove_hidden(hidden);
-    owed_ += kWorkForHidden * static_cast<double>(hidden.size()) +
-             kWorkForTry * static_cast<double>(to_try_.size());
-    appendBounds(to_try_, hidden);
-    if (hidden.empty() || owed_ <= kLeastWorth * built_work_) {
-      to_try_.clear();
-      return;
-    }
-    aimAt(buffer, hidden, owed_, frame.last_visible, whatIsLeft(false));
-    owed_ = 0.0;
-    const double more = count(buffer);
-    built_work_ += more;
-    work_ += more;
   }
-  static constexpr std::size_t kMostHidden = 128;
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
-  // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
-  // surfaces to be drawn, draws them, calls finish() and asks once more; `stats` counts the last time alone,
-  // and the buffer's own statistics count both.
-  template <typename Buffer, typename Finish, typename Ask>
-  void traverse(Buffer& buffer, CullStats& stats, std::vector<ObjectId>& visible, const Finish& finish,
-                const Ask& ask) {
-    CullStats found = stats;
-    ask(found, visible);
+  // asking.all(stats, visible), which adds to the one and appends to the other, ascending. Where that calls
+  // for more surfaces to be drawn, draws them and removes what these hide, by asking.again(stats, visible).
+  template <typename Buffer, typename Asking>
+  void traverse(Buffer& buffer, CullStats& stats, std::vector<ObjectId>& visible, Asking&& asking) {
+    asking.all(stats, visible);
     if (draws()) {
       if (drawFound(buffer, visible)) {
-        finish();
-        visible.clear();
-        found = stats;
-        ask(found, visible);
+        asking.again(stats, visible);
       }
       findNews(visible, last_kept_);
       last_kept_ = visible;
-      learnTries();
+      aims_.endView(last_kept_, news_);
     }
-    stats = found;
   }
   // Whether many of the objects that the buffer shows are new in this frame.
   bool changesFast() const { return culling::changesFast(news_.size(), last_kept_.size()); }
@@ -181,13 +151,6 @@ class SurfaceDrawer {
   static constexpr std::size_t kNearest = 512;
   // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
   static constexpr std::size_t kStill = 2;
-  // Kept objects that may be hidden by now are aimed at in one of so many views.
-  static constexpr std::uint32_t kViewsBetweenTries = 4;
-  // So much is drawn for each box that was hidden in the last view or is new, and for each of these objects.
-  static constexpr double kWorkForHidden = 100.0, kWorkForTry = 50.0;
-  // They are not aimed at before all of that, added up over the views since it was done last, is more than
-  // this part of what was drawn before.
-  static constexpr double kLeastWorth = 1.5;
 
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
@@ -196,75 +159,44 @@ class SurfaceDrawer {
                         std::back_inserter(news_));
   }
 
-  // Draws the surfaces of objects that the buffer shows, and for which draw() did not: after a jump those
-  // that were too far away, else those that the last frame did not keep, if they are many. Returns whether it
-  // drew.
+  // Draws surfaces that draw() did not, once it is known what the buffer shows: after a jump those of objects
+  // that were too far away; else what may hide some of these objects, or where nothing is known of that, the
+  // surfaces of those that the last frame did not keep, if they are many. Returns whether it drew.
   template <typename Buffer>
-  bool drawFound(Buffer& buffer, std::span<const ObjectId> not_hidden) {
+  bool drawFound(Buffer& buffer, std::span<const ObjectId> shown) {
     if (jumped_) {
       if (!more_in_frustum_) {
         return false;
       }
-      findNews(not_hidden, in_frustum_);
+      findNews(shown, in_frustum_);
       draw(buffer, news_, ViewStep::kSame, whatIsLeft(true));
       work_ += count(buffer);
       return true;
     }
-    findNews(not_hidden, last_kept_);
-    if (!culling::changesFast(news_.size(), not_hidden.size())) {
+    findNews(shown, last_kept_);
+    const bool most_is_new = news_.size() * kStill > shown.size();
+    if (!aims_.boxes().empty()) {
+      const double worth = aims_.aimAtShown(shown, news_, built_work_);
+      if (worth == 0.0) {
+        return false;
+      }
+      SurfaceDrawing drawing = whatIsLeft(false);
+      drawing.draw_resting = most_is_new;
+      drawing.targets = aims_.boxes();
+      drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, worth));
+      draw(buffer, shown, ViewStep::kSame, drawing);
+      work_ += count(buffer);
+      return true;
+    }
+    if (!culling::changesFast(news_.size(), shown.size())) {
       return false;
     }
     // What comes into view is not counted in the budget, but for one of time.
     SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
-    drawing.draw_resting = news_.size() * kStill > not_hidden.size();
-    if (aims_ && !drawing.draw_resting) {
-      targets_.clear();
-      appendBounds(news_, targets_);
-      aimAt(buffer, targets_, kWorkForHidden * static_cast<double>(news_.size()), not_hidden, drawing);
-      count(buffer);
-      return true;
-    }
+    drawing.draw_resting = most_is_new;
     draw(buffer, news_, ViewStep::kSame, drawing);
     count(buffer);
     return true;
-  }
-
-  void appendBounds(std::span<const ObjectId> objects, std::vector<Box>& boxes) const {
-    for (const ObjectId object : objects) {
-      boxes.push_back(bounds_[object.value]);
-    }
-  }
-  // Lists the kept objects that may be hidden by now: those that were new in the last view, and now and then
-  // the others.
-  void listTries(std::span<const ObjectId> kept) {
-    tried_.beginView();
-    for (const ObjectId object : news_) {
-      tried_.forget(object);
-    }
-    ++views_;
-    if (!news_.empty() || views_ % kViewsBetweenTries == 0) {
-      for (const ObjectId object : kept) {
-        if (!tried_.rests(object)) {
-          to_try_.push_back(object);
-        }
-      }
-    }
-  }
-  // Those that were aimed at and are still kept are left alone for a while.
-  void learnTries() {
-    for (const ObjectId object : to_try_) {
-      if (std::binary_search(last_kept_.begin(), last_kept_.end(), object)) {
-        tried_.seen(object);
-      }
-    }
-  }
-  // Draws surfaces of some objects before boxes that are to be hidden, as much as these are worth.
-  template <typename Buffer>
-  void aimAt(Buffer& buffer, std::span<const Box> boxes, double worth, std::span<const ObjectId> objects,
-             SurfaceDrawing drawing) {
-    drawing.targets = boxes;
-    drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, worth));
-    draw(buffer, objects, ViewStep::kSame, drawing);
   }
 
   // How surfaces are drawn with what is left of the frame's budget.
@@ -313,13 +245,7 @@ class SurfaceDrawer {
   std::vector<ObjectId> in_frustum_;  // objects whose surfaces are drawn first after a jump
   bool more_in_frustum_ = false;      // whether there are others in the frustum
   std::vector<ObjectId> last_kept_, news_;
-  std::span<const Box> bounds_;  // of the scene's objects
-  bool aims_ = false;            // only what hides something is drawn in this frame
-  std::vector<Box> targets_;
-  DoubtMemory tried_{0};          // kept objects that were aimed at
-  std::vector<ObjectId> to_try_;  // those that are in this frame
-  std::uint32_t views_ = 0;
-  double owed_ = 0.0;  // work for what was not aimed at yet, see kLeastWorth
+  HidingAims aims_;  // without boxes: everything is drawn, whatever it hides
 };
 
 }  // namespace sightline::culling

@@ -1,0 +1,119 @@
+#include "src/culling/hiding_aims.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace sightline::culling {
+namespace {
+
+constexpr std::size_t kObjects = 100;
+
+// The box of an object has its number as its least x.
+std::vector<Box> numberedBoxes() {
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < kObjects; ++i) {
+    const auto x = static_cast<float>(i);
+    boxes.push_back({Vec3f(x, 0, 0), Vec3f(x + 1, 1, 1)});
+  }
+  return boxes;
+}
+std::vector<ObjectId> numbers(std::size_t first, std::size_t end) {
+  std::vector<ObjectId> objects;
+  for (std::size_t i = first; i < end; ++i) {
+    objects.push_back(ObjectId(i));
+  }
+  return objects;
+}
+std::vector<ObjectId> objectsOf(std::span<const Box> boxes) {
+  std::vector<ObjectId> objects;
+  for (const Box& box : boxes) {
+    objects.push_back(ObjectId(static_cast<std::size_t>(box.min.x)));
+  }
+  std::ranges::sort(objects);
+  return objects;
+}
+
+class HidingAimsTest : public testing::Test {
+ protected:
+  HidingAimsTest() : bounds_(numberedBoxes()), aims_(bounds_) {}
+
+  // A view that shows these objects and hides none of them.
+  double view(const std::vector<ObjectId>& shown, const std::vector<ObjectId>& news, double drawn) {
+    aims_.beginView();
+    const double work = aims_.aimAtShown(shown, news, drawn);
+    aimed_at_ = objectsOf(aims_.boxes());
+    aims_.endView(shown, news);
+    return work;
+  }
+
+  std::vector<Box> bounds_;
+  HidingAims aims_;
+  std::vector<ObjectId> aimed_at_;
+};
+
+TEST_F(HidingAimsTest, FirstComesWhatTheLastViewHid) {
+  aims_.beginView();
+  EXPECT_TRUE(aims_.boxes().empty());
+  const Box box{Vec3f(50, 0, 0), Vec3f(60, 1, 1)};
+  aims_.aimAtHidden({&box, 1}, numbers(3, 5));
+  EXPECT_EQ(objectsOf(aims_.boxes()), (std::vector{ObjectId(3u), ObjectId(4u), ObjectId(50u)}));
+  aims_.beginView();
+  EXPECT_TRUE(aims_.boxes().empty());
+}
+
+TEST_F(HidingAimsTest, WhatIsNewIsAimedAtAtOnceWhereLittleWasDrawn) {
+  EXPECT_GT(view(numbers(0, 20), numbers(5, 8), 10.0), 0.0);
+  const std::vector<ObjectId> news = numbers(5, 8);
+  EXPECT_TRUE(std::ranges::includes(aimed_at_, news));
+}
+
+TEST_F(HidingAimsTest, WhatWasDrawnPutsOffWhatIsWorthLess) {
+  // A single new object is worth less than a tenth of this.
+  constexpr double kDrawn = 1500.0;
+  int views = 1;
+  while (view(numbers(0, 1), numbers(0, 1), kDrawn) == 0.0) {
+    ASSERT_LT(++views, 1000);
+  }
+  EXPECT_GT(views, 10);
+}
+
+TEST_F(HidingAimsTest, WorkThatIsTooMuchForOneViewIsLeftToLaterOnes) {
+  constexpr double kDrawn = 2000.0;
+  const double first = view(numbers(0, kObjects), numbers(0, kObjects), kDrawn);
+  EXPECT_GT(first, 0.0);
+  EXPECT_LE(first, 2.0 * kDrawn);
+  // Nothing is added in these views, for all of the objects rest.
+  const double second = view(numbers(0, kObjects), {}, kDrawn);
+  EXPECT_EQ(second, 0.0) << "there is nothing to aim at";
+  const double third = view(numbers(0, kObjects), numbers(0, 1), kDrawn);
+  EXPECT_GT(third, kDrawn) << "a new object alone is worth less";
+}
+
+TEST_F(HidingAimsTest, KeptObjectsAreAimedAtLessAndLessOften) {
+  int early = 0, late = 0;
+  for (int i = 0; i < 400; ++i) {
+    const bool aims = view(numbers(0, 1), {}, 1.0) > 0.0;
+    (i < 40 ? early : late) += aims ? 1 : 0;
+  }
+  EXPECT_GT(early, 2);
+  EXPECT_GT(late, 0) << "they are not forgotten";
+  EXPECT_LT(late, 9 * early) << "in nine times as many views";
+}
+
+TEST_F(HidingAimsTest, AnObjectThatComesBackIsNew) {
+  for (int i = 0; i < 100; ++i) {
+    view(numbers(0, 1), {}, 1.0);
+  }
+  EXPECT_GT(view(numbers(0, 1), numbers(0, 1), 1.0), 0.0);
+  EXPECT_EQ(aimed_at_, numbers(0, 1));
+  // After that it rests for a short time alone.
+  int views = 1;
+  while (view(numbers(0, 1), {}, 1.0) == 0.0) {
+    ASSERT_LT(++views, 20);
+  }
+}
+
+}  // namespace
+}  // namespace sightline::culling
