@@ -42,7 +42,7 @@ class HidingAims {
   // Kept objects that may be hidden by now are aimed at in one of so many views, or when some are new.
   static constexpr std::uint32_t kViewsBetweenTries = 4;
   // So much is drawn for each new object, and for each of the other ones.
-  static constexpr double kWorkForNew = 100.0, kWorkForTry = 50.0;
+  static constexpr double kWorkForNew = 50.0, kWorkForTry = 25.0;
   // They are not aimed at before what is left of that, added up over the views, is more than this part of
   // what was drawn before in the view. What is more than a larger part of it, and more than so much work, is
   // left to later views.

@@ -27,7 +27,7 @@ class UsualWork {
   void frame(double work) { usual_ += (work - usual_) / (usual_ > 0.0 ? kMemory : 1.0); }
 
  private:
-  static constexpr double kJumpedPixels = 8.0;  // times SurfaceDrawing::pixels_per_edge
+  static constexpr double kJumpedPixels = 32.0;  // times SurfaceDrawing::pixels_per_edge
   static constexpr double kGrowth = 16.0, kLeastWork = 6000.0, kMemory = 8.0;  // views
 
   double usual_ = 0.0;  // of a view; 0: nothing has been drawn

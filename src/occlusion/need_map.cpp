@@ -24,47 +24,49 @@ inline constexpr Pixels kPixels;
 using Squares = hn::CappedTag<float, NeedMap::kVector>;
 inline constexpr Squares kSquares;
 
-// Whether some value of the target from pixel (x, y0) on, in the rows before y1 of a square, is less than
-// this.
-HWY_INLINE bool anyLess(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1,
-                        float than) {
+// The least value of the target in a square, from pixel (x, y0) on, in the rows before y1.
+HWY_INLINE float leastOf(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1) {
+  auto least = hn::Set(kPixels, kInfinite);
   for (std::int32_t part = 0; part < kSquare; part += static_cast<std::int32_t>(hn::Lanes(kPixels))) {
     const float* pixels =
         target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y0) + x + part;
-    auto least = hn::Set(kPixels, kInfinite);
+    auto column = hn::Set(kPixels, kInfinite);
     for (std::int32_t y = y0; y < y1; ++y, pixels += target.stride) {
-      least = hn::Min(least, hn::LoadU(kPixels, pixels));
+      column = hn::Min(column, hn::LoadU(kPixels, pixels));
     }
     const auto valid = hn::FirstN(
         kPixels, static_cast<std::size_t>(std::max(static_cast<std::int32_t>(target.width) - x - part, 0)));
-    if (!hn::AllFalse(kPixels, hn::And(valid, hn::Lt(least, hn::Set(kPixels, than))))) {
-      return true;
-    }
+    least = hn::IfThenElse(valid, hn::Min(least, column), least);
   }
-  return false;
+  return hn::GetLane(hn::MinOfLanes(kPixels, least));
 }
 
-// Sets `open` to infinity in the squares of a row, from the first to the last column, in which the target
-// hides the nearest box.
-void closeSquares(const DepthTarget& target, std::int32_t row, std::int32_t first, std::int32_t last,
-                  const float* nearest, float* open) {
+// Sets `open`, see NeedMap, in the squares of a row from the first to the last column. What is infinite stays
+// so.
+void lookAtSquares(const DepthTarget& target, std::int32_t row, std::int32_t first, std::int32_t last,
+                   const float* nearest, float* open) {
   const std::int32_t y0 = row * kSquare,
                      y1 = std::min(y0 + kSquare, static_cast<std::int32_t>(target.height));
   for (std::int32_t column = first; column <= last; ++column) {
-    if (open[column] < kInfinite && !anyLess(target, column * kSquare, y0, y1, nearest[column])) {
-      open[column] = kInfinite;
+    if (open[column] < kInfinite) {
+      const float least = leastOf(target, column * kSquare, y0, y1);
+      open[column] = least < nearest[column] ? std::max(open[column], least) : kInfinite;
     }
   }
 }
 
-// The number of these values that are less than `nearest`. They may be read up to the end of a vector.
-std::size_t openBehind(const float* open, std::size_t count, float nearest) {
-  const auto near = hn::Set(kSquares, nearest);
+// The number of these values that are less than a depth: that of the bound in the square of their row in
+// which it is nearest, where it has the value `first` in the first square and `step` more in each one after
+// that. They may be read up to the end of a vector.
+std::size_t openBehind(const float* open, std::size_t count, float first, float step, float floor) {
   const std::size_t lanes = hn::Lanes(kSquares);
   std::size_t behind = 0;
   for (std::size_t i = 0; i < count; i += lanes) {
+    const auto at = hn::Iota(kSquares, static_cast<float>(i));
+    const auto depth = hn::Max(hn::Add(hn::Mul(at, hn::Set(kSquares, step)), hn::Set(kSquares, first)),
+                               hn::Set(kSquares, floor));
     const auto valid = hn::FirstN(kSquares, std::min(count - i, lanes));
-    behind += hn::CountTrue(kSquares, hn::And(valid, hn::Lt(hn::LoadU(kSquares, open + i), near)));
+    behind += hn::CountTrue(kSquares, hn::And(valid, hn::Lt(hn::LoadU(kSquares, open + i), depth)));
   }
   return behind;
 }
@@ -76,7 +78,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline::occlusion {
 namespace {
-HWY_EXPORT(closeSquares);
+HWY_EXPORT(lookAtSquares);
 HWY_EXPORT(openBehind);
 
 }  // namespace
@@ -108,19 +110,25 @@ void NeedMap::add(const PixelRectangle& rectangle, float nearest) {
 void NeedMap::look(const DepthTarget& target, const PixelRectangle& rectangle) {
   const std::int32_t first = rectangle.x0 / kSize, last = (rectangle.x1 - 1) / kSize;
   for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
-    HWY_DYNAMIC_DISPATCH(closeSquares)(target, row, first, last, nearestOf(row), open_.data() + at(row));
+    HWY_DYNAMIC_DISPATCH(lookAtSquares)(target, row, first, last, nearestOf(row), open_.data() + at(row));
   }
 }
 
-std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, float nearest) const {
+std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, const DepthBound& depth) const {
   if (rectangle.empty()) {
     return 0;
   }
+  // In a square the bound is nearest in a corner.
+  constexpr auto kLast = static_cast<float>(kSize - 1), kStep = static_cast<float>(kSize);
+  const float corner = std::max(kLast * depth.along_x, 0.0f) + std::max(kLast * depth.along_y, 0.0f);
   const std::int32_t first = rectangle.x0 / kSize, end = (rectangle.x1 - 1) / kSize + 1;
   std::size_t squares = 0;
   for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
+    const float at_first = depth.at_origin + corner + depth.along_y * (kStep * static_cast<float>(row)) +
+                           depth.along_x * (kStep * static_cast<float>(first));
     squares += HWY_DYNAMIC_DISPATCH(openBehind)(open_.data() + at(row) + first,
-                                                static_cast<std::size_t>(end - first), nearest);
+                                                static_cast<std::size_t>(end - first), at_first,
+                                                kStep * depth.along_x, depth.floor);
   }
   return static_cast<std::uint32_t>(
       std::min<std::size_t>(squares * kSize * kSize, static_cast<std::size_t>(rectangle.area())));

@@ -24,9 +24,13 @@ class NeedMap {
   // and where the target has come nearer since.
   void look(const DepthTarget& target, const PixelRectangle& rectangle);
 
-  // An upper bound of how many pixels of a rectangle may be of use for a surface that is nowhere nearer than
-  // this reciprocal depth.
-  std::uint32_t pixels(const PixelRectangle& rectangle, float nearest) const;
+  // How many pixels of a rectangle may be of use for a surface that gets these depths; or more, but for
+  // rounding.
+  std::uint32_t pixels(const PixelRectangle& rectangle, const DepthBound& depth) const;
+  // The same for one that is nowhere nearer than this reciprocal depth.
+  std::uint32_t pixels(const PixelRectangle& rectangle, float nearest) const {
+    return pixels(rectangle, DepthBound{.at_origin = nearest, .floor = nearest});
+  }
 
   // A value for each square of a row, and one more: reciprocal depths of the farthest and of the nearest box
   // there. A surface is of use where it is before the farthest, and what is there already is not before the
@@ -41,7 +45,9 @@ class NeedMap {
 
   std::int32_t stride_ = 0;  // squares of a row, and room for a vector
   std::vector<float> farthest_, nearest_;
-  std::vector<float> open_;  // the farthest box where some pixel does not hide all, else infinite
+  // What surfaces must be before to be of use: the farthest box, or what there is in the farthest pixel,
+  // where that does not hide all; else infinite.
+  std::vector<float> open_;
 };
 
 }  // namespace sightline::occlusion

@@ -189,23 +189,32 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   listPatches(part, together);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
-  std::uint32_t shown = 0;
+  std::uint32_t shown = 0, of_patches = 0;
   patches_.clear();
   for (PatchImage& patch : shown_) {
     const SurfacePatch& source = set_->patches[patch.patch];
-    const std::uint32_t of_patch = map_.wanted(patch.rectangle, patch.nearest);
+    std::uint32_t of_patch = map_.wanted(patch.rectangle, patch.nearest);
     if (of_patch == 0) {
       continue;
     }
     if (patch.sign != 0) {
       view_.setDepth(patch);
-      patches_.push_back(patch);
     } else {
       view_.addClusters(source, patch);
       if (patch.count == 0) {
         continue;
       }
     }
+    if (patch.flat) {
+      of_patch = std::min(of_patch, map_.wanted(patch.rectangle, patch.depth));
+      if (of_patch == 0) {
+        continue;
+      }
+    }
+    if (patch.sign != 0) {
+      patches_.push_back(patch);
+    }
+    of_patches += of_patch;
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
     if (!leavesOut(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
@@ -222,7 +231,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
       ++shown;
     }
   }
-  if (together && shown > 1 && withinBudget()) {
+  if (together && shown > 1 && pays(std::min(pixels, of_patches), part.edge_count) && withinBudget()) {
     addTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
   }
 }

@@ -45,6 +45,11 @@ class WindingMap {
     }
     return hides(rectangle, nearest) ? 0u : static_cast<std::uint32_t>(rectangle.area());
   }
+  // The same for one that gets these depths; with needs alone they tell more than the nearest of them.
+  std::uint32_t wanted(const PixelRectangle& rectangle, const DepthBound& depth) const {
+    return needs_ != nullptr ? needs_->pixels(rectangle, depth)
+                             : static_cast<std::uint32_t>(rectangle.area());
+  }
 
   // Draws groups one after the other: covered pixels get the group's depth where that is nearer. Different
   // rows of tiles may be drawn by different threads; the result does not depend on them. edges: those that

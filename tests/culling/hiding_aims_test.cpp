@@ -80,7 +80,7 @@ TEST_F(HidingAimsTest, WhatWasDrawnPutsOffWhatIsWorthLess) {
 }
 
 TEST_F(HidingAimsTest, WorkThatIsTooMuchForOneViewIsLeftToLaterOnes) {
-  constexpr double kDrawn = 2000.0;
+  constexpr double kDrawn = 1000.0;
   const double first = view(numbers(0, kObjects), numbers(0, kObjects), kDrawn);
   EXPECT_GT(first, 0.0);
   EXPECT_LE(first, 2.0 * kDrawn);

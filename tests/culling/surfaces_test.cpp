@@ -640,6 +640,25 @@ TEST(SurfaceTargets, OnlySurfacesBeforeOneOfThemAreDrawn) {
   EXPECT_EQ(drawn(std::array{Box{{kNan, -1.0f, -31.0f}, {kNan, 1.0f, -30.0f}}}), (std::array{false, false}));
 }
 
+TEST(SurfaceTargets, ASurfaceIsBeforeATargetOnlyWhereItIsNearer) {
+  // A wall that begins to the left, near the eye, and ends to the right, far away.
+  Scene scene;
+  const Vec3f a(-2.0f, -10.0f, -4.0f), b(30.0f, -10.0f, -60.0f), c(30.0f, 10.0f, -60.0f),
+      d(-2.0f, 10.0f, -4.0f);
+  addTriangles(scene, addMaterial(scene, Opacity::kOpaque, true), std::array<Vec3f, 6>{a, b, c, a, c, d});
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 128, .height = 128});
+  const auto groups = [&](const Box& target) {
+    SurfaceDrawing drawing = kEverything;
+    drawing.targets = {&target, 1};
+    raster.begin(frontView());
+    raster.draw(surfaces, surfaces.objects, drawing);
+    return raster.surfaceStats().groups;
+  };
+  EXPECT_EQ(groups({{11.0f, -1.0f, -41.0f}, {12.0f, 1.0f, -40.0f}}), 1u) << "behind it";
+  EXPECT_EQ(groups({{8.0f, -1.0f, -20.0f}, {8.8f, 1.0f, -19.0f}}), 0u) << "before it";
+}
+
 TEST(SurfaceTargets, WhatHidMostComesFirstInTheNextView) {
   Scene scene;
   const MaterialId stone = addMaterial(scene, Opacity::kOpaque, true);

@@ -49,8 +49,8 @@ struct NeedBed {
   }
   float at(std::int32_t x, std::int32_t y) const { return values[static_cast<std::size_t>(y * stride + x)]; }
 
-  // The same as NeedMap::pixels(), pixel by pixel.
-  std::uint32_t pixels(const PixelRectangle& r, float nearest) const {
+  // The same as NeedMap::pixels(), pixel by pixel. A square ends beyond the buffer where that ends in it.
+  std::uint32_t pixels(const PixelRectangle& r, const DepthBound& depth) const {
     constexpr std::int32_t k = NeedMap::kSize;
     std::int32_t squares = 0;
     for (std::int32_t row = r.y0 / k; row * k < r.y1; ++row) {
@@ -63,13 +63,18 @@ struct NeedBed {
             nearest_box = std::max(nearest_box, box.nearest);
           }
         }
-        bool open = false;
-        for (std::int32_t y = row * k; y < std::min((row + 1) * k, height); ++y) {
-          for (std::int32_t x = column * k; x < std::min((column + 1) * k, width); ++x) {
-            open = open || at(x, y) < nearest_box;
+        float farthest_pixel = std::numeric_limits<float>::infinity(), nearest = -farthest_pixel;
+        for (std::int32_t y = row * k; y < (row + 1) * k; ++y) {
+          for (std::int32_t x = column * k; x < (column + 1) * k; ++x) {
+            if (x < width && y < height) {
+              farthest_pixel = std::min(farthest_pixel, at(x, y));
+            }
+            const float here = depth.along_x * static_cast<float>(x) + depth.along_y * static_cast<float>(y);
+            nearest = std::max({nearest, here + depth.at_origin, depth.floor});
           }
         }
-        squares += open && nearest > farthest_box ? 1 : 0;
+        const bool open = farthest_pixel < nearest_box;
+        squares += open && nearest > std::max(farthest_box, farthest_pixel) ? 1 : 0;
       }
     }
     return static_cast<std::uint32_t>(std::min(squares * k * k, r.area()));
@@ -81,26 +86,41 @@ struct NeedBed {
   NeedMap map;
 };
 
+// Sums of its values are exact.
+DepthBound randomBound(test::Random& random) {
+  const auto between = [&](int low, int high) {
+    return static_cast<float>(low +
+                              static_cast<int>(random.below(static_cast<std::uint32_t>(high - low + 1))));
+  };
+  return {between(-4, 4) / 16.0f, between(-4, 4) / 16.0f, between(-2, 8), between(-3, 3)};
+}
+
 TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
   test::Random random(3);
-  std::size_t needed = 0, not_needed = 0;
+  std::size_t needed = 0, not_needed = 0, sloping_needed = 0, sloping_not_needed = 0;
   for (int n = 0; n < 4000; ++n) {
     NeedBed bed(random);
     for (int k = 0; k < 5; ++k) {
       const PixelRectangle rectangle = bed.randomRectangle(random);
       const auto nearest = static_cast<float>(random.below(7));
-      const std::uint32_t expected = bed.pixels(rectangle, nearest);
+      const DepthBound level{.at_origin = nearest, .floor = nearest}, sloping = randomBound(random);
+      const std::uint32_t expected = bed.pixels(rectangle, level),
+                          of_sloping = bed.pixels(rectangle, sloping);
       for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
         bed.map.look(bed.target(), {0, 0, bed.width, bed.height});
         EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
+        EXPECT_EQ(bed.map.pixels(rectangle, sloping), of_sloping) << n << ", " << hwy::TargetName(target);
         hwy::SetSupportedTargetsForTest(0);
       }
       (expected > 0 ? needed : not_needed) += 1;
+      (of_sloping > 0 ? sloping_needed : sloping_not_needed) += 1;
     }
   }
   EXPECT_GT(needed, 2000u);
   EXPECT_GT(not_needed, 2000u);
+  EXPECT_GT(sloping_needed, 2000u);
+  EXPECT_GT(sloping_not_needed, 2000u);
 }
 
 TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {
