@@ -8,6 +8,23 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef SIGHTLINE_NEED_MAP_ONCE
+#define SIGHTLINE_NEED_MAP_ONCE
+namespace sightline::occlusion {
+namespace {
+
+// Rows of squares, and the value of a bound in each, where it is nearest: `first` in the first one of the
+// first row, and so much more in each next one, at least `floor`.
+struct SquareRows {
+  const float* open;
+  std::size_t stride, rows, count;
+  float first, along_row, along_column, floor;
+};
+
+}  // namespace
+}  // namespace sightline::occlusion
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
@@ -55,18 +72,21 @@ void lookAtSquares(const DepthTarget& target, std::int32_t row, std::int32_t fir
   }
 }
 
-// The number of these values that are less than a depth: that of the bound in the square of their row in
-// which it is nearest, where it has the value `first` in the first square and `step` more in each one after
-// that. They may be read up to the end of a vector.
-std::size_t openBehind(const float* open, std::size_t count, float first, float step, float floor) {
+// The number of squares that are open for what has the bound's values. Rows may be read up to the end of a
+// vector.
+std::size_t openBehind(const SquareRows& squares) {
   const std::size_t lanes = hn::Lanes(kSquares);
+  const auto floor = hn::Set(kSquares, squares.floor), step = hn::Set(kSquares, squares.along_row);
   std::size_t behind = 0;
-  for (std::size_t i = 0; i < count; i += lanes) {
-    const auto at = hn::Iota(kSquares, static_cast<float>(i));
-    const auto depth = hn::Max(hn::Add(hn::Mul(at, hn::Set(kSquares, step)), hn::Set(kSquares, first)),
-                               hn::Set(kSquares, floor));
-    const auto valid = hn::FirstN(kSquares, std::min(count - i, lanes));
-    behind += hn::CountTrue(kSquares, hn::And(valid, hn::Lt(hn::LoadU(kSquares, open + i), depth)));
+  for (std::size_t row = 0; row < squares.rows; ++row) {
+    const float* open = squares.open + squares.stride * row;
+    const auto first = hn::Set(kSquares, squares.first + squares.along_column * static_cast<float>(row));
+    for (std::size_t i = 0; i < squares.count; i += lanes) {
+      const auto at = hn::Iota(kSquares, static_cast<float>(i));
+      const auto depth = hn::Max(hn::Add(hn::Mul(at, step), first), floor);
+      const auto valid = hn::FirstN(kSquares, std::min(squares.count - i, lanes));
+      behind += hn::CountTrue(kSquares, hn::And(valid, hn::Lt(hn::LoadU(kSquares, open + i), depth)));
+    }
   }
   return behind;
 }
@@ -121,17 +141,20 @@ std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, const DepthBound&
   // In a square the bound is nearest in a corner.
   constexpr auto kLast = static_cast<float>(kSize - 1), kStep = static_cast<float>(kSize);
   const float corner = std::max(kLast * depth.along_x, 0.0f) + std::max(kLast * depth.along_y, 0.0f);
-  const std::int32_t first = rectangle.x0 / kSize, end = (rectangle.x1 - 1) / kSize + 1;
-  std::size_t squares = 0;
-  for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
-    const float at_first = depth.at_origin + corner + depth.along_y * (kStep * static_cast<float>(row)) +
-                           depth.along_x * (kStep * static_cast<float>(first));
-    squares += HWY_DYNAMIC_DISPATCH(openBehind)(open_.data() + at(row) + first,
-                                                static_cast<std::size_t>(end - first), at_first,
-                                                kStep * depth.along_x, depth.floor);
-  }
+  const std::int32_t column = rectangle.x0 / kSize, row = rectangle.y0 / kSize;
+  const SquareRows squares{.open = open_.data() + at(row) + column,
+                           .stride = static_cast<std::size_t>(stride_),
+                           .rows = static_cast<std::size_t>((rectangle.y1 - 1) / kSize + 1 - row),
+                           .count = static_cast<std::size_t>((rectangle.x1 - 1) / kSize + 1 - column),
+                           .first = depth.at_origin + corner +
+                                    depth.along_y * (kStep * static_cast<float>(row)) +
+                                    depth.along_x * (kStep * static_cast<float>(column)),
+                           .along_row = kStep * depth.along_x,
+                           .along_column = kStep * depth.along_y,
+                           .floor = depth.floor};
+  const std::size_t pixels = HWY_DYNAMIC_DISPATCH(openBehind)(squares) * kSize * kSize;
   return static_cast<std::uint32_t>(
-      std::min<std::size_t>(squares * kSize * kSize, static_cast<std::size_t>(rectangle.area())));
+      std::min<std::size_t>(pixels, static_cast<std::size_t>(rectangle.area())));
 }
 
 }  // namespace sightline::occlusion
