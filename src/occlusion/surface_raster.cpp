@@ -184,41 +184,35 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   part_distance_ = length(center(set_->part_bounds[image.part]) - eye_);
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
-  const bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
-                        !leavesOut(part_rests_[image.part]);
+  bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
+                  !leavesOut(part_rests_[image.part]);
   listPatches(part, together);
+  const std::uint32_t of_patches = countWanted();
+  together = together && pays(std::min(pixels, of_patches), part.edge_count);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
-  std::uint32_t shown = 0, of_patches = 0;
+  std::uint32_t shown = 0;
   patches_.clear();
-  for (PatchImage& patch : shown_) {
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    PatchImage& patch = shown_[i];
     const SurfacePatch& source = set_->patches[patch.patch];
-    std::uint32_t of_patch = map_.wanted(patch.rectangle, patch.nearest);
-    if (of_patch == 0) {
+    const bool alone = !leavesOut(patch_rests_[patch.patch]) &&
+                       patch.rectangle.area() >= drawing_.min_patch_pixels &&
+                       pays(wanted_[i], source.edge_count);
+    if (wanted_[i] == 0 || !(together || alone)) {
       continue;
     }
     if (patch.sign != 0) {
-      view_.setDepth(patch);
+      patches_.push_back(patch);
     } else {
       view_.addClusters(source, patch);
       if (patch.count == 0) {
         continue;
       }
     }
-    if (patch.flat) {
-      of_patch = std::min(of_patch, map_.wanted(patch.rectangle, patch.depth));
-      if (of_patch == 0) {
-        continue;
-      }
-    }
-    if (patch.sign != 0) {
-      patches_.push_back(patch);
-    }
-    of_patches += of_patch;
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
-    if (!leavesOut(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
-        pays(of_patch, source.edge_count) && withinBudget()) {
+    if (alone && withinBudget()) {
       addPatch(patch, patch_rests_[patch.patch]);
     }
   }
@@ -231,9 +225,25 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
       ++shown;
     }
   }
-  if (together && shown > 1 && pays(std::min(pixels, of_patches), part.edge_count) && withinBudget()) {
+  if (together && shown > 1 && withinBudget()) {
     addTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
   }
+}
+
+// Sets wanted_ to the pixels in which each of shown_ may gain something, and returns their sum.
+std::uint32_t SurfaceRaster::countWanted() {
+  wanted_.clear();
+  std::uint32_t sum = 0;
+  for (PatchImage& patch : shown_) {
+    std::uint32_t pixels = map_.wanted(patch.rectangle, patch.nearest);
+    if (pixels > 0 && patch.sign != 0) {
+      view_.setDepth(patch);
+      pixels = std::min(pixels, map_.wanted(patch.rectangle, patch.depth));
+    }
+    wanted_.push_back(pixels);
+    sum += pixels;
+  }
+  return sum;
 }
 
 // Sets shown_ to the patches of a part that may be drawn. together: all of them, however small, as one group.

@@ -74,6 +74,7 @@ class SurfaceRaster {
   const Facing& facingOf(std::uint32_t patch);
   void addPart(const PartImage& part, std::uint32_t pixels);
   void listPatches(const SurfacePart& part, bool together);
+  std::uint32_t countWanted();
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
                    const PixelRectangle& rectangle, Rest& rest);
@@ -113,10 +114,11 @@ class SurfaceRaster {
   std::vector<WindingGroup> drawn_;
   std::vector<WindingGain> gains_;
   std::vector<std::uint32_t> summed_;  // scratch for one addBoundary(): chains
-  // Scratch for one addPart(): patches that do not face away, those that may be seen, and those of these that
-  // are drawn as a whole.
+  // Scratch for one addPart(): patches that do not face away, those that may be seen, in how many pixels each
+  // of these may gain something, and those that are drawn as a whole.
   std::vector<ShownPatch> sides_;
   std::vector<PatchImage> shown_, patches_;
+  std::vector<std::uint32_t> wanted_;
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;    // number of the first one since a jump
   std::uint32_t first_of_set_ = 0;  // number of the first one since which the same set is drawn
