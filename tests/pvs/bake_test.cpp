@@ -354,6 +354,38 @@ TEST(Bake, OfSeveralBoxesOfViewersCoversThoseAndNoOther) {
   judge.judge(2, 1, 0.25, 4);
 }
 
+TEST(Bake, CountsTheCellsWithViewersUnlessTheyAreTooMany) {
+  const Scene scene = randomScene(2);
+  const OccluderSet occluders = allOccluders(scene);
+  const std::vector<Box> viewers{{{0, 0, 0}, {9, 9, 1}}, {{8, 8, 8}, {8, 8, 8}}, {{20, 3, 31}, {32, 9, 32}}};
+  constexpr std::uint32_t kDepth = 4;
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, {.max_depth = kDepth, .viewers = viewers});
+  ASSERT_TRUE(bake);
+  const Result<BakedVisibility> baked = bake->assemble(bake->bakeAll());
+  ASSERT_TRUE(baked);
+  const Vec3d low = baked->octree.min, high = baked->octree.max;
+  std::uint64_t count = 0;
+  OctreeCell cell{kDepth, {}};
+  for (std::uint32_t i = 0; i < 1u << (3 * kDepth); ++i) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      cell.at[axis] = i >> (axis * kDepth) & ((1u << kDepth) - 1);
+    }
+    const Vec3d min = cellMin(low, high, cell), max = cellMax(low, high, cell);
+    count += std::ranges::any_of(viewers, [&](const Box& box) {
+      const Vec3d first(box.min), last(box.max);
+      return first.x <= max.x && first.y <= max.y && first.z <= max.z && last.x >= min.x && last.y >= min.y &&
+             last.z >= min.z;
+    });
+  }
+  EXPECT_GT(count, 20u);
+  EXPECT_EQ(bake->mostCells(), count);
+  // All cells of the cube meet viewers, and 8^7 = 2,097,152 are as many as are counted.
+  const std::vector<Box> all{{{0, 0, 0}, {33, 33, 33}}};
+  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 7, .viewers = all})->mostCells(),
+            Bake::kMostCounted);
+  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 8, .viewers = all})->mostCells(), std::nullopt);
+}
+
 TEST(Bake, WithFewerPlacesForViewersChoosesSmallerCells) {
   const Scene scene = randomScene(2);
   const OccluderSet occluders = allOccluders(scene);

@@ -26,10 +26,18 @@ using namespace pvs;
 struct Bake::Data {
   Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
        const ParallelFor& parallel_for)
-      : scene(view, occluders, settings, parallel_for), scene_id(sceneId(view)) {}
+      : scene(view, occluders, settings, parallel_for), scene_id(sceneId(view)) {
+    if (const std::uint64_t count = scene.mostLeaves({}, kMostCounted + 1); count <= kMostCounted) {
+      most_cells = count;
+    }
+  }
+
+  // How much of the bake a cell with all below it is, 0 to 1.
+  double shareOf(const OctreeCell& cell) const;
 
   BakeScene scene;
   SceneId scene_id;
+  std::optional<std::uint64_t> most_cells;  // Bake::mostCells
   std::uint64_t hash = 0;
 };
 
@@ -169,7 +177,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
 }
 
 // The fraction of the region that lies in the cell. Axes along which the region has no extent do not count.
-double shareOf(const BakeScene& scene, const OctreeCell& cell) {
+double shareOfRegion(const BakeScene& scene, const OctreeCell& cell) {
   const CellBox box = scene.boxOf(cell);
   const Vec3d common = min(box.max, scene.region.max) - max(box.min, scene.region.min);
   const Vec3d all = scene.region.extent();
@@ -181,6 +189,12 @@ double shareOf(const BakeScene& scene, const OctreeCell& cell) {
 }
 
 }  // namespace
+
+double Bake::Data::shareOf(const OctreeCell& cell) const {
+  return most_cells ? static_cast<double>(scene.mostLeaves(cell, kMostCounted)) /
+                          static_cast<double>(std::max<std::uint64_t>(*most_cells, 1))
+                    : shareOfRegion(scene, cell);
+}
 
 Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings,
                         const ParallelFor& parallel_for) {
@@ -222,6 +236,9 @@ std::uint32_t Bake::baseDepth() const {
 }
 const OccluderCounts& Bake::occluders() const {
   return data_->scene.counts;
+}
+std::optional<std::uint64_t> Bake::mostCells() const {
+  return data_->most_cells;
 }
 std::uint64_t Bake::hash() const {
   return data_->hash;
@@ -403,7 +420,7 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
     double triangles = 0.0;
     summarize(scene, cell, head.summary.leaves, triangles);
     head.summary.mean_triangles = triangles / head.summary.leaves;
-    head.summary.share = shareOf(scene, task.cell);
+    head.summary.share = impl_->data->shareOf(task.cell);
     write(cell, main);
   } else {
     impl_->baker.forgetOldest();

@@ -312,6 +312,20 @@ bool BakeScene::mayDivide(const OctreeCell& cell) const {
          (cell.level < settings.max_depth && anyIntersecting(reach_tree_, boxOf(cell)));
 }
 
+std::uint64_t BakeScene::mostLeaves(const OctreeCell& cell, std::uint64_t most) const {
+  if (!holdsViewers(boxOf(cell))) {
+    return 0;
+  }
+  if (!mayDivide(cell)) {
+    return 1;
+  }
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < 8 && count < most; ++i) {
+    count += mostLeaves(cell.child(i), most - count);
+  }
+  return count;
+}
+
 bool BakeScene::holdsViewers(const CellBox& box) const {
   return anyIntersecting(viewer_tree_, box);
 }

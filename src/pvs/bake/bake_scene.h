@@ -81,6 +81,8 @@ struct BakeScene {
   std::uint32_t baseDepth() const { return base_depth_; }
   // True if the cell's depth allows dividing it.
   bool mayDivide(const OctreeCell& cell) const;
+  // How many leaves with viewers come of the cell if all cells are divided that may be; counted up to `most`.
+  std::uint64_t mostLeaves(const OctreeCell& cell, std::uint64_t most) const;
   // Appends, in ascending order, the occluders that intersect the box and are useful to cells of this level.
   void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
   // Those that are useful to cells of this level, for searches along lines of sight.

@@ -122,7 +122,8 @@ class FirstBaker {
         endEarly(bar);
       }
       if (!said_ && open_ > 0 && std::chrono::steady_clock::now() - start > kSayHowToGoOn) {
-        bar.say("should this be interrupted, the same command with --resume goes on");
+        bar.say(
+            fmt::format("{}should this be interrupted, the same command with --resume goes on", cellsText()));
         said_ = true;
       }
       bar.update(std::min(share_, 1.0), note());
@@ -282,6 +283,13 @@ class FirstBaker {
     leaves_ += summary.leaves;
     triangles_ += summary.mean_triangles * summary.leaves;
     share_ += summary.share;
+  }
+
+  // How many cells the bake has, as the beginning of a line.
+  std::string cellsText() const {
+    const std::optional<std::uint64_t> cells = bake_.mostCells();
+    return cells ? fmt::format("viewers are in {} cells at most; ", *cells)
+                 : fmt::format("viewers may be in more than {} cells; ", Bake::kMostCounted);
   }
 
   std::string note() const {
