@@ -2,6 +2,8 @@
 
 // What most benchmarks share: a stopwatch, averages, the command line.
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -13,6 +15,13 @@ double microseconds(const auto& function) {
   const auto start = std::chrono::steady_clock::now();
   function();
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Processor time of this thread so far.
+inline double processorMicroseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
 inline double medianOf(std::vector<double> values) {

@@ -7,7 +7,6 @@
 // --questions: prints a line for each part instead: id, leaves, questions, microseconds, bytes.
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -67,12 +66,6 @@ Options optionsOf(int argc, char** argv) {
     }
   }
   return options;
-}
-
-double processorMicroseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
 struct MeasuredPart {
