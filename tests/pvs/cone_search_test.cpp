@@ -98,6 +98,46 @@ TEST(ConeSearch, LeavesOutNoBoxThatThePointsOfTheConeLieIn) {
   }
 }
 
+TEST(ConeSearch, LeavesOutNoBoxThatALineFromBoxToBoxPasses) {
+  std::size_t beside = 0, left_out = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const CellBox from = randomBox(random, seed % 3 == 0);
+    CellBox to = randomBox(random, seed % 2 == 0);
+    if (seed % 5 == 0) {
+      to.max.x = from.max.x;  // one side, or both, do not move along an axis
+      to.min.x = seed % 10 == 0 ? from.min.x : std::min(to.min.x, to.max.x);
+    }
+    const Cone lines(from, to, 1e-9, 2.0 * kReach);
+    const auto placeIn = [&random](const CellBox& box) {
+      Vec3d place;
+      for (int axis = 0; axis < 3; ++axis) {
+        place[axis] = random.below(4) == 0   ? box.min[axis]
+                      : random.below(3) == 0 ? box.max[axis]
+                                             : random.in(box.min[axis], box.max[axis]);
+      }
+      return place;
+    };
+    BoxLanes passed, others;
+    for (std::uint32_t i = 0; i < 80; ++i) {
+      const Vec3d a = placeIn(from), b = placeIn(to);
+      const double t = i % 4 == 0 ? 0.0 : i % 4 == 1 ? 1.0 : random.in(0.0, 1.0);
+      passed.add(boxThrough(a + (b - a) * t, random), i);
+      others.add(boxThrough(random.point(kReach), random), i);
+    }
+    passed.pad();
+    others.pad();
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      EXPECT_EQ(placesMetOf(passed, {&lines, 1}).size(), passed.size()) << "seed " << seed;
+      hwy::SetSupportedTargetsForTest(0);
+    }
+    beside += others.size();
+    left_out += others.size() - placesMetOf(others, {&lines, 1}).size();
+  }
+  EXPECT_GT(left_out, beside / 2);
+}
+
 TEST(ConeSearch, LeavesOutMostOfWhatIsBesideTheCone) {
   std::size_t beside = 0, found_beside = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

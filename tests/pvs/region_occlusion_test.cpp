@@ -357,6 +357,52 @@ TEST(RegionOcclusion, HidesNothingThatALineSees) {
   EXPECT_GT(hidden, asked / 20) << "the test would prove little";
 }
 
+// A box somewhere in this one, flat where it is.
+CellBox partOf(const CellBox& box, std::mt19937& random) {
+  const Vec3d a = placeIn(box, random), b = placeIn(box, random);
+  return {min(a, b), max(a, b)};
+}
+
+// A focus only spares looking at panels that no line meets. A window is as wide along each axis as lines of
+// sight are anywhere, so that lines through its corners may leave the shaft of the two boxes.
+TEST(FusedOcclusion, AnswersTheSameInFocus) {
+  using Answer = FusedOcclusion::Answer;
+  std::array<int, 3> counts{};
+  int clear = 0, blocked = 0;
+  for (std::uint32_t seed = 1; seed <= test::rounds(40u); ++seed) {
+    std::mt19937 random(seed);
+    const Scene scene = untidyScene(random);
+    const Panels panels = findPanels(scene.view());
+    FusedOcclusion all(panels, 100.0), focused(panels, 100.0);
+    const CellBox space{{-6, -5, -6}, {6, 5, 6}};
+    for (int i = 0; i < 12; ++i) {
+      const CellBox region = partOf(space, random), target = partOf(space, random),
+                    window = partOf(space, random);
+      focused.focus(FusedOcclusion::kAll, region, target);
+      focused.focus(FusedOcclusion::kBeforeWindow, region, window);
+      focused.focus(FusedOcclusion::kBehindWindow, window, target);
+      const std::array<std::array<const CellBox*, 2>, 4> ends{
+          {{&region, &target}, {&region, &window}, {&window, &target}, {&target, &region}}};
+      for (int question = 0; question < 24; ++question) {
+        const auto [from, to] = ends[static_cast<std::size_t>(question % 4)];
+        const CellBox start = partOf(*from, random);
+        const FusedTarget end{
+            .box = partOf(*to, random),
+            .object = random() % 2 != 0 ? static_cast<std::uint32_t>(random() % 14) : kNoObject};
+        const Answer answer = all.ask(start, end, kNear);
+        ASSERT_EQ(focused.ask(start, end, kNear), answer) << "seed " << seed;
+        ++counts[static_cast<std::size_t>(answer)];
+        const Vec3d eye = placeIn(start, random), point = placeIn(end.box, random);
+        const bool is_clear = all.isClear(eye, point);
+        ASSERT_EQ(focused.isClear(eye, point), is_clear) << "seed " << seed;
+        ++(is_clear ? clear : blocked);
+      }
+    }
+  }
+  EXPECT_GT(*std::ranges::min_element(counts), 100) << "all answers, or the test would prove little";
+  EXPECT_GT(std::min(clear, blocked), 1000);
+}
+
 // The shaft against points of the hull, and against lines that lie beside it.
 TEST(Shaft, HoldsTheHullOfBothBoxesAndLittleMore) {
   std::mt19937 random(5);

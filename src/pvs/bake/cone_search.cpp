@@ -97,14 +97,14 @@ float inverseOf(double end, float if_zero) {
 
 }  // namespace
 
-Cone::Cone(const Vec3d& point, const CellBox& box, double margin, double magnitude) {
+Cone::Cone(const CellBox& from, const CellBox& to, double margin, double magnitude) {
   const double slack = margin + kRounding * magnitude;
   for (int a = 0; a < 3; ++a) {
-    const double far = box.max[a] - point[a], near = box.min[a] - point[a];
-    // Where the cone has no extent along an axis, all of it is before what lies beyond the point.
+    const double far = to.max[a] - from.max[a], near = to.min[a] - from.min[a];
+    // Where an end stays where it is along an axis, all of the cone is before what lies beyond it.
     Axis& axis = axes[static_cast<std::size_t>(a)];
-    axis.low = static_cast<float>(point[a] + slack);
-    axis.high = static_cast<float>(point[a] - slack);
+    axis.low = static_cast<float>(from.max[a] + slack);
+    axis.high = static_cast<float>(from.min[a] - slack);
     axis.inverse_far = inverseOf(far, 1e25f);
     axis.inverse_near = far == near && axis.inverse_far != 1e25f ? axis.inverse_far : inverseOf(near, -1e25f);
   }

@@ -12,16 +12,18 @@
 
 namespace sightline::pvs {
 
-// The convex hull of a point and a box: at the place t of all lines, from 0 at the point to 1 in the box, it
-// is a box as well. With a box without extent, a line of sight.
+// The convex hull of a point, or of a box, and another box: at the place t of all lines from 0 at the first
+// to 1 in the second, it is a box as well. From a point to a box without extent, a line of sight.
 class Cone {
  public:
   // margin: how close boxes may come without being left out, metres. magnitude: bound of all coordinates.
-  Cone(const Vec3d& point, const CellBox& box, double margin, double magnitude);
+  Cone(const Vec3d& point, const CellBox& box, double margin, double magnitude)
+      : Cone(CellBox{point, point}, box, margin, magnitude) {}
+  Cone(const CellBox& from, const CellBox& to, double margin, double magnitude);
 
   // Along an axis, a box from min to max is met at those t between 0 and 1 for which
-  // min - low <= t * (the far end of the cone) and max - high >= t * (the near end). Each is a bound of t,
-  // and both ends are given as their inverses.
+  // min - low <= t * (how far the upper end moves) and max - high >= t * (how far the lower end moves), from
+  // the first box to the second. Each is a bound of t, and both ways are given as their inverses.
   struct Axis {
     float low = 0.0f, high = 0.0f, inverse_far = 0.0f, inverse_near = 0.0f;
   };

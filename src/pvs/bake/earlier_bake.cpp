@@ -129,8 +129,9 @@ std::vector<PanelMark> panelMarks(const BakeScene& scene, std::span<const Object
       hash.add(panels.vertices[edge.to]);
       hash.add(edge.beyond == kNoPanel ? 0 : own[edge.beyond]);
       // From itself on, because where the others begin depends on the numbers of panels.
-      for (std::uint32_t k = 0; k < edge.around_count; ++k) {
-        const SheetAround& sheet = panels.around[edge.first_around + (edge.self + k) % edge.around_count];
+      const EdgeRing ring = edge.ring == kNoRing ? EdgeRing{} : panels.rings[edge.ring];
+      for (std::uint32_t k = 0; k < ring.count; ++k) {
+        const SheetAround& sheet = panels.around[ring.first + (ring.self + k) % ring.count];
         hash.add(own[sheet.panel]);
         hash.add(sheet.beyond == kNoPanel ? 0 : own[sheet.beyond]);
         hash.add(std::uint64_t{sheet.rises});

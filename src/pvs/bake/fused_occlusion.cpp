@@ -19,6 +19,8 @@ namespace {
 // hidden as a whole.
 constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
 constexpr std::size_t kMostBlockers = 8;
+// More panels than this are found in their tree rather than one after the other.
+constexpr std::size_t kMostInFocus = 2048;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
@@ -248,17 +250,41 @@ bool FusedOcclusion::isCrossedOften(std::uint32_t number, const Vec3d& end) {
       component.in_doubt = component.in_doubt || crossing.in_doubt;
     }
   }
-  return component.closed && !component.in_doubt && component.crossings > 0 &&
-         component.crossings > mostBehind(component, end);
+  return component.closed && !component.in_doubt && component.crossings > 0 && !maySpare(component, end);
+}
+
+// A window's corners need not be in the shaft of region and target, so what lines to and from a window may
+// meet is found for themselves.
+void FusedOcclusion::focus(Focus on, const CellBox& from, const CellBox& to) {
+  InFocus& focus = foci_[on];
+  // Lines end in boxes that are widened.
+  const double wide = kWidening * magnitude_;
+  const Vec3d by{wide, wide, wide};
+  focus.from = {from.min - by, from.max + by};
+  focus.to = {to.min - by, to.max + by};
+  const Cone lines(focus.from, focus.to, error_, magnitude_);
+  focus.panels.clear();
+  focus.set = panels_.tree.find(std::span(&lines, 1), kMostInFocus, found_);
+  if (focus.set) {
+    focus.panels.add(panels_.tree.boxes(), found_);
+    focus.panels.pad();
+  }
 }
 
 template <typename Test>
 bool FusedOcclusion::anyPanelOn(const Vec3d& from, const Vec3d& to, const Test& test) {
   const Cone line(from, {to, to}, error_, magnitude_);
-  panels_.tree.find(std::span(&line, 1), panels_.panels.size(), found_);
+  const auto focus =
+      std::ranges::find_if(foci_, [&](const InFocus& in_focus) { return in_focus.holds(from, to); });
+  const BoxLanes& boxes = focus != foci_.end() ? focus->panels : panels_.tree.boxes();
+  if (focus != foci_.end()) {
+    placesMet(boxes, std::span(&line, 1), found_);
+  } else {
+    panels_.tree.find(std::span(&line, 1), panels_.panels.size(), found_);
+  }
   const SegmentTest segment(from, to, error_);
   return std::ranges::any_of(found_, [&](std::uint32_t place) {
-    const std::uint32_t panel = panels_.tree.boxes().number[place];
+    const std::uint32_t panel = boxes.number[place];
     return !segment.misses(panels_.bounds[panel]) && test(panel);
   });
 }
@@ -315,7 +341,11 @@ void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const V
   anySheet(panels_, number, [&](const Sheet& sheet) {
     // The signs tell on which side of the sheet's three edges the line passes.
     const Vec3d a = sheet.a - from, b = sheet.b - from, c = sheet.c - from;
-    const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c)), ca = dot(along, cross(c, a));
+    const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c));
+    if (std::min(ab, bc) < -doubt && std::max(ab, bc) > doubt) {
+      return false;  // whatever the third one is
+    }
+    const double ca = dot(along, cross(c, a));
     const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});
     if (least < -doubt && most > doubt) {
       return false;
@@ -375,15 +405,19 @@ bool FusedOcclusion::gather(std::uint32_t component) {
     }
     for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[panel])) {
       std::uint32_t beyond = edge.beyond;
+      const auto isMember = [&] {
+        return beyond != kNoPanel && places_[beyond].question == question_ &&
+               places_[beyond].component == component;
+      };
+      // A member is not left out.
+      if (isMember() || misses(edge)) {
+        continue;
+      }
       if (beyond == kNoPanel ? !left_out_.empty() : isLeftOut(beyond)) {
         beyond = panels_.joinedWithout(edge, [this](std::uint32_t other) { return isLeftOut(other); });
-      }
-      if (beyond != kNoPanel && places_[beyond].question == question_ &&
-          places_[beyond].component == component) {
-        continue;
-      }
-      if (misses(edge)) {
-        continue;
+        if (isMember()) {
+          continue;
+        }
       }
       if (beyond == kNoPanel) {
         addSpoiler(panel);
@@ -445,16 +479,16 @@ bool FusedOcclusion::tooNear(std::uint32_t number) const {
   });
 }
 
-// How many sheets of the component may lie between the end of the line of sight, on their back, and another
-// point of the target, on their front: a line that ends there does not cross them.
-std::int32_t FusedOcclusion::mostBehind(const Component& component, const Vec3d& point) const {
-  std::int32_t count = 0;
+// Whether a line that ends elsewhere in the target may be spared all crossings with the component: so many of
+// its sheets may lie between that end and the one of the line of sight, which is on their backs.
+bool FusedOcclusion::maySpare(const Component& component, const Vec3d& end) const {
+  std::int32_t left = component.crossings;
   for (std::uint32_t i = component.first; i < component.first + component.count; ++i) {
     if (!intersects(target_, panels_.bounds[members_[i]])) {
       continue;
     }
-    anySheet(panels_, members_[i], [&](const Sheet& sheet) {
-      if (!intersects(target_, sheet.bounds(sheet_margin_)) || sheet.sideOf(point, error_).positive()) {
+    const bool spared = anySheet(panels_, members_[i], [&](const Sheet& sheet) {
+      if (!intersects(target_, sheet.bounds(sheet_margin_)) || sheet.sideOf(end, error_).positive()) {
         return false;
       }
       // With all of the target on one side of its plane, it does not meet the target.
@@ -463,12 +497,18 @@ std::int32_t FusedOcclusion::mostBehind(const Component& component, const Vec3d&
         const Determinant side = sheet.sideOf(target_.corner(corner), error_);
         before += side.positive() ? 1 : 0;
         after += side.negative() ? 1 : 0;
+        if (before > 0 && after > 0) {
+          break;
+        }
       }
-      count += before == 8 || after == 8 ? 0 : 1;
-      return false;
+      left -= before == 8 || after == 8 ? 0 : 1;
+      return left <= 0;
     });
+    if (spared) {
+      return true;
+    }
   }
-  return count;
+  return false;
 }
 
 }  // namespace sightline::pvs

@@ -47,6 +47,11 @@ class FusedOcclusion {
   // True if the line of sight between the points surely meets the front of no sheet. object: whose sheets do
   // not count, or kNoObject.
   bool isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object = kNoObject);
+  // Finds the panels that any line from one box to the other may meet, once for many questions: a line that
+  // begins in the one and ends in the other is compared with no others. The answers are the same without.
+  // Each focus holds until it is set again.
+  enum Focus : std::uint8_t { kAll, kBeforeWindow, kBehindWindow };
+  void focus(Focus on, const CellBox& from, const CellBox& to);
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
   // Where all lines of sight from a region begin that ask() tries.
   static Vec3d startOf(const CellBox& region);
@@ -99,7 +104,7 @@ class FusedOcclusion {
   bool misses(const PanelEdge& edge);
   std::uint32_t sidesBeyond(std::uint32_t vertex);
   bool tooNear(std::uint32_t panel) const;
-  std::int32_t mostBehind(const Component& component, const Vec3d& point) const;
+  bool maySpare(const Component& component, const Vec3d& end) const;
 
   const Panels& panels_;
   double magnitude_;
@@ -121,7 +126,19 @@ class FusedOcclusion {
   // By end: the crossings of a line of sight, with all that are not left out when it is first followed.
   std::array<std::vector<Crossing>, kEndCount> traced_;
   std::uint32_t traced_count_ = 0;
-  std::vector<std::uint32_t> found_;     // places in the tree of panels
+  // The panels that lines of sight from one box to the other may meet.
+  struct InFocus {
+    CellBox from{}, to{};
+    bool set = false;
+    BoxLanes panels{};
+
+    bool holds(const Vec3d& a, const Vec3d& b) const {
+      return set && min(a, from.min) == from.min && max(a, from.max) == from.max &&
+             min(b, to.min) == to.min && max(b, to.max) == to.max;
+    }
+  };
+  std::array<InFocus, 3> foci_;
+  std::vector<std::uint32_t> found_;     // places in one of these, or in the tree of panels
   std::vector<std::uint32_t> blockers_;  // panels that blocked lines of sight, the last one first
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component

@@ -244,9 +244,8 @@ class PanelMaker {
           PanelEdge edge{panels_.sheets[number], panels_.sheets[nextInSheet(number)],
                          panelAt(joined_[number])};
           if (const RingPlace& place = ring_of_[number]; place.count > 2) {
-            edge.first_around = addRing(place);
-            edge.around_count = place.count;
-            edge.self = place.self;
+            edge.ring = static_cast<std::uint32_t>(panels_.rings.size());
+            panels_.rings.push_back({addRing(place), place.count, place.self});
           }
           panels_.edges.push_back(edge);
         }
@@ -267,6 +266,13 @@ class PanelMaker {
       panels_.ranks[i] = {kMostSteps, hash.value()};
     }
     countSteps();
+    std::vector<std::uint32_t> sorted(panels_.panels.size());
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::ranges::stable_sort(sorted, {}, [this](std::uint32_t panel) { return panels_.ranks[panel]; });
+    panels_.order.resize(sorted.size());
+    for (std::uint32_t place = 0; place < sorted.size(); ++place) {
+      panels_.order[sorted[place]] = place;
+    }
   }
 
   // Counts each panel's steps to the nearest border, from the borders inwards.

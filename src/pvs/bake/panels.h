@@ -25,14 +25,20 @@ namespace sightline::pvs {
 
 inline constexpr std::uint32_t kNoPanel = 0xffffffffu;
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;
+inline constexpr std::uint32_t kNoRing = 0xffffffffu;
 
 // An edge at the border of a panel.
 struct PanelEdge {
   std::uint32_t from = 0, to = 0;  // into Panels::vertices
   std::uint32_t beyond = 0;        // the panel that is joined with it there, or kNoPanel
-  // All sheets that end at the edge, in Panels::around, in the order of their angles; and which of them is
-  // this one. None if the two that are joined are the only ones.
-  std::uint32_t first_around = 0, around_count = 0, self = 0;
+  // All sheets that end at the edge, in Panels::rings; kNoRing if the two that are joined are the only ones.
+  std::uint32_t ring = kNoRing;
+};
+
+// The sheets that end at an edge, in the order of their angles, as one of them sees it.
+struct EdgeRing {
+  std::uint32_t first = 0, count = 0;  // into Panels::around
+  std::uint32_t self = 0;              // which of them is the edge's own
 };
 
 // A sheet that ends at an edge.
@@ -67,20 +73,20 @@ struct Panels {
   LargeVector<Vec3d> vertices{};
   LargeVector<std::uint32_t> sheets{};  // three vertices each, counter-clockwise as seen from its front
   LargeVector<PanelEdge> edges{};
+  LargeVector<EdgeRing> rings{};
   LargeVector<SheetAround> around{};
   LargeVector<Panel> panels{};
-  LargeVector<Box> bounds{};       // by panel, also of what was not rounded
-  ConeTree tree{};                 // of the bounds, with the numbers of the panels
-  std::vector<PanelRank> ranks{};  // by panel
+  LargeVector<Box> bounds{};           // by panel, also of what was not rounded
+  ConeTree tree{};                     // of the bounds, with the numbers of the panels
+  std::vector<PanelRank> ranks{};      // by panel
+  std::vector<std::uint32_t> order{};  // by panel: its place among all by rank, those of equal rank by number
   double slack = 0.0;
 
   std::span<const std::uint32_t> sheetsOf(const Panel& p) const {
     return std::span(sheets).subspan(std::size_t{3} * p.first_sheet, std::size_t{3} * p.sheet_count);
   }
   // Whether panel a is taken before panel b. Those of equal content are taken in the order of their objects.
-  bool before(std::uint32_t a, std::uint32_t b) const {
-    return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : a < b;
-  }
+  bool before(std::uint32_t a, std::uint32_t b) const { return order[a] < order[b]; }
   std::span<const PanelEdge> edgesOf(const Panel& p) const {
     return std::span(edges).subspan(p.first_edge, p.edge_count);
   }
@@ -94,14 +100,15 @@ struct Panels {
 // The pairs are those of brackets, all around: each sheet that rises with the next one that falls.
 template <typename IsOut>
 std::uint32_t Panels::joinedWithout(const PanelEdge& edge, const IsOut& is_out) const {
-  const std::span<const SheetAround> all = std::span(around).subspan(edge.first_around, edge.around_count);
-  if (all.empty()) {
+  if (edge.ring == kNoRing) {
     return kNoPanel;
   }
-  const bool rises = all[edge.self].rises;
+  const EdgeRing& ring = rings[edge.ring];
+  const std::span<const SheetAround> all = std::span(around).subspan(ring.first, ring.count);
+  const bool rises = all[ring.self].rises;
   std::uint32_t open = 0;
-  for (std::uint32_t i = edge.self, step = 1; step < all.size(); ++step) {
-    i = rises ? (i + 1 == all.size() ? 0 : i + 1) : (i == 0 ? edge.around_count : i) - 1;
+  for (std::uint32_t i = ring.self, step = 1; step < all.size(); ++step) {
+    i = rises ? (i + 1 == all.size() ? 0 : i + 1) : (i == 0 ? ring.count : i) - 1;
     const SheetAround& sheet = all[i];
     if (is_out(sheet.panel) || (sheet.beyond != kNoPanel && !is_out(sheet.beyond))) {
       continue;

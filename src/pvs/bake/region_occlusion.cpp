@@ -93,6 +93,7 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
     return answer;
   }
   narrowed_or_divided_ = true;
+  fused_.focus(FusedOcclusion::kAll, region, target.box);
   if (hasClearLine(region, target, kLinesBefore)) {
     return Answer::kClear;
   }
@@ -146,6 +147,10 @@ RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, Ce
     const double far = fused_.magnitude();
     Passage passage{region, {{-far, -far, -far}, {far, far, far}}, target, axis, object};
     passage.window.min[axis] = passage.window.max[axis] = middle;
+    if (!tighten(passage)) {
+      return Answer::kHidden;
+    }
+    focusOn(passage);
     bool cut = false;
     const Answer answer = narrowPassage(passage, effort.narrowings, cut);
     if (answer != Answer::kUndecided) {
@@ -167,9 +172,15 @@ RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, Ce
   if (!tighten(*longest)) {
     return Answer::kHidden;
   }
+  focusOn(*longest);
   const Answer answer = dividePassage(*longest, effort);
   decided_by_ = WitnessKind::kDivided;
   return answer;
+}
+
+void RegionOcclusion::focusOn(const Passage& passage) {
+  fused_.focus(FusedOcclusion::kBeforeWindow, passage.region, passage.window);
+  fused_.focus(FusedOcclusion::kBehindWindow, passage.window, passage.target);
 }
 
 RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, const RegionEffort& effort) {

@@ -59,6 +59,9 @@ class RegionOcclusion {
   // longest of these passages.
   Answer decideThroughWindows(CellBox region, CellBox target, std::uint32_t object,
                               const RegionEffort& effort);
+  // Of all that is asked from now on, most is about lines of sight from its region to its window, and from
+  // there to its target.
+  void focusOn(const Passage& passage);
   // Halves the widest part of a passage that has been narrowed, and narrows both passages that this gives.
   // All lines of each have to be blocked. A half of which narrowing cuts nothing off is given up: dividing it
   // again costs as much as before and rarely decides.

@@ -20,16 +20,15 @@ constexpr double kProductRounding = 0x1p-48;  // as a fraction of the normal and
 
 }  // namespace
 
-Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, double slack)
-    : rounding_(kProductRounding * magnitude + slack) {
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3d normal;
-    normal[axis] = 1.0;
-    add(normal, std::max(region.max[axis], target.max[axis]));
-    add(-normal, -std::min(region.min[axis], target.min[axis]));
-  }
+Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, double slack) {
+  // Of a product of a normal and a point, for each metre of the normal's size.
+  const double rounding = kProductRounding * magnitude + slack;
+  const Vec3d margin{rounding, rounding, rounding};
+  low_ = min(region.min, target.min) - margin;
+  high_ = max(region.max, target.max) + margin;
   for (int zero = 0; zero < 3; ++zero) {
     const int i = (zero + 1) % 3, j = (zero + 2) % 3;
+    Sides& across = slanted_[static_cast<std::size_t>(zero)];
     for (const double side_i : {-1.0, 1.0}) {
       for (const double side_j : {-1.0, 1.0}) {
         const auto corner = [&](const CellBox& box) {
@@ -41,36 +40,53 @@ Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, dou
         if (!(along_i * along_j < 0.0)) {
           continue;  // one of the corners is the farther one along every normal of the quadrant
         }
-        Vec3d normal;
-        normal[i] = side_i * std::abs(along_j);
-        normal[j] = side_j * std::abs(along_i);
-        add(normal, std::max(normal[i] * from_i + normal[j] * from_j, normal[i] * to_i + normal[j] * to_j));
+        const double normal_i = side_i * std::abs(along_j), normal_j = side_j * std::abs(along_i);
+        const double level =
+            std::max(normal_i * from_i + normal_j * from_j, normal_i * to_i + normal_j * to_j);
+        across.sides[across.count++] = {normal_i, normal_j,
+                                        level + rounding * (std::abs(normal_i) + std::abs(normal_j))};
       }
     }
   }
 }
 
-void Shaft::add(const Vec3d& normal, double level) {
-  sides_[count_++] = {normal, level + rounding_ * l1Norm(normal)};
-}
-
 bool Shaft::misses(const Box& box) const {
   const Vec3d low(box.min), high(box.max);
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const Vec3d& n = sides_[i].normal;
-    const Vec3d nearest{n.x > 0.0 ? low.x : high.x, n.y > 0.0 ? low.y : high.y, n.z > 0.0 ? low.z : high.z};
-    if (dot(n, nearest) > sides_[i].level) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low[axis] > high_[axis] || high[axis] < low_[axis]) {
       return true;
+    }
+  }
+  for (int zero = 0; zero < 3; ++zero) {
+    const int i = (zero + 1) % 3, j = (zero + 2) % 3;
+    const Sides& across = slanted_[static_cast<std::size_t>(zero)];
+    for (std::uint32_t s = 0; s < across.count; ++s) {
+      const Side& side = across.sides[s];
+      const double nearest_i = side.normal_i > 0.0 ? low[i] : high[i],
+                   nearest_j = side.normal_j > 0.0 ? low[j] : high[j];
+      if (side.normal_i * nearest_i + side.normal_j * nearest_j > side.level) {
+        return true;
+      }
     }
   }
   return false;
 }
 
 std::uint32_t Shaft::sidesBeyond(const Vec3d& point) const {
-  std::uint32_t beyond = 0;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    beyond |= std::uint32_t{dot(sides_[i].normal, point) > sides_[i].level} << i;
+  std::uint32_t beyond = 0, bit = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    beyond |= std::uint32_t{point[axis] > high_[axis]} << bit++;
+    beyond |= std::uint32_t{point[axis] < low_[axis]} << bit++;
   }
+  const auto addSlanted = [&](const Sides& across, double i, double j) {
+    for (std::uint32_t s = 0; s < across.count; ++s) {
+      const Side& side = across.sides[s];
+      beyond |= std::uint32_t{side.normal_i * i + side.normal_j * j > side.level} << bit++;
+    }
+  };
+  addSlanted(slanted_[0], point.y, point.z);
+  addSlanted(slanted_[1], point.z, point.x);
+  addSlanted(slanted_[2], point.x, point.y);
   return beyond;
 }
 
@@ -78,9 +94,8 @@ std::uint32_t Shaft::sidesBeyond(const Vec3d& point) const {
 // rounding leaves too much rather than too little.
 bool Shaft::misses(const Vec3d& from, const Vec3d& to) const {
   double begin = 0.0, end = 1.0;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const double at_from = dot(sides_[i].normal, from) - sides_[i].level,
-                 at_to = dot(sides_[i].normal, to) - sides_[i].level;
+  // How far both ends are beyond a side. True if all of the segment is.
+  const auto isBeyond = [&](double at_from, double at_to) {
     if (at_from > 0.0 && at_to > 0.0) {
       return true;
     }
@@ -88,6 +103,24 @@ bool Shaft::misses(const Vec3d& from, const Vec3d& to) const {
       begin = std::max(begin, at_from / (at_from - at_to));
     } else if (at_to > 0.0) {
       end = std::min(end, at_from / (at_from - at_to));
+    }
+    return false;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (isBeyond(from[axis] - high_[axis], to[axis] - high_[axis]) ||
+        isBeyond(low_[axis] - from[axis], low_[axis] - to[axis])) {
+      return true;
+    }
+  }
+  for (int zero = 0; zero < 3; ++zero) {
+    const int i = (zero + 1) % 3, j = (zero + 2) % 3;
+    const Sides& across = slanted_[static_cast<std::size_t>(zero)];
+    for (std::uint32_t s = 0; s < across.count; ++s) {
+      const Side& side = across.sides[s];
+      if (isBeyond(side.normal_i * from[i] + side.normal_j * from[j] - side.level,
+                   side.normal_i * to[i] + side.normal_j * to[j] - side.level)) {
+        return true;
+      }
     }
   }
   return begin > end + kAlongSegment;

@@ -27,17 +27,20 @@ class Shaft {
   std::uint32_t sidesBeyond(const Vec3d& point) const;
 
  private:
-  // All of the shaft has dot(normal, x) <= level, however the product is rounded.
+  // All of the shaft has low <= x along each axis, x <= high, and for each slanted side, whose normal is
+  // across one axis, normal_i * x_i + normal_j * x_j <= level along the two others, however the products are
+  // rounded.
   struct Side {
-    Vec3d normal;
-    double level = 0.0;
+    double normal_i = 0.0, normal_j = 0.0, level = 0.0;
   };
-  void add(const Vec3d& normal, double level);
+  // By the axis that the normals are across: at most one side for each quadrant of the other two.
+  struct Sides {
+    std::array<Side, 4> sides{};
+    std::uint32_t count = 0;
+  };
 
-  // Six along the axes, and at most one for each quadrant of each pair of axes.
-  std::array<Side, 18> sides_;
-  std::uint32_t count_ = 0;
-  double rounding_ = 0.0;  // of a product of a normal and a point, for each metre of the normal's size
+  Vec3d low_, high_;
+  std::array<Sides, 3> slanted_{};
 };
 
 }  // namespace sightline::pvs
