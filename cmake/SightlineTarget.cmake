@@ -1,13 +1,16 @@
 # One place for what every target of the project has in common.
 #
-# sightline_library(NAME GLOB... [ALONE FILE...])
+# sightline_library(NAME GLOB... [BATCH N] [ALONE FILE...])
 #                                   a static library target sightline_NAME with the alias sightline::NAME.
 # sightline_options(TARGET)         language level, warnings, floating-point contract, sanitizers.
-# sightline_unity(TARGET)           where CMAKE_UNITY_BUILD is on (the presets release and sanitize): compiles
-#                                   eight sources together, which takes less than half of the time, for most of it
-#                                   is spent on headers. Sources whose unnamed namespace repeats a name of
+# sightline_unity(TARGET [BATCH N] [ALONE FILE...])
+#                                   where CMAKE_UNITY_BUILD is on (the presets release and sanitize): compiles N
+#                                   sources together, or eight, which takes less than half of the time, for most
+#                                   of it is spent on headers. Sources whose unnamed namespace repeats a name of
 #                                   another one's, or of a header that others use, are compiled alone, once it is
 #                                   said here: ALONE FILE...
+#                                   More than eight at once are for what includes much; what is fast because the
+#                                   compiler inlines well keeps its eight.
 
 find_program(SIGHTLINE_CCACHE ccache)
 mark_as_advanced(SIGHTLINE_CCACHE)
@@ -55,7 +58,10 @@ function(sightline_options target)
 endfunction()
 
 function(sightline_unity target)
-  cmake_parse_arguments(PARSE_ARGV 1 own "" "" "ALONE")
+  cmake_parse_arguments(PARSE_ARGV 1 own "" "BATCH" "ALONE")
+  if(own_BATCH)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${own_BATCH})
+  endif()
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     # Highway compiles such a file once for each instruction set, by including it again and again.
@@ -71,11 +77,11 @@ function(sightline_unity target)
 endfunction()
 
 function(sightline_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 own "" "" "ALONE")
+  cmake_parse_arguments(PARSE_ARGV 1 own "" "BATCH" "ALONE")
   file(GLOB sources CONFIGURE_DEPENDS ${own_UNPARSED_ARGUMENTS})
   add_library(sightline_${name} STATIC ${sources})
   list(TRANSFORM own_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  sightline_unity(sightline_${name} ALONE ${own_ALONE})
+  sightline_unity(sightline_${name} BATCH ${own_BATCH} ALONE ${own_ALONE})
   add_library(sightline::${name} ALIAS sightline_${name})
   set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name})
   sightline_options(sightline_${name})

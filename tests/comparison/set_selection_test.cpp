@@ -85,7 +85,7 @@ TEST(SetPool, InheritsWhatTryingAllPairsFinds) {
   }
 }
 
-constexpr PictureShape kShape{64, 90.0, 0.1};
+constexpr PictureShape kSeenShape{64, 90.0, 0.1};
 
 // A picture with all occluders of a model, seen from the origin along -z.
 struct Seen {
@@ -97,9 +97,9 @@ struct Seen {
     model.finish();
     std::vector<NearOccluder> candidates;
     OccluderFilter(model.set).find({0, 0, 0}, 0.0, candidates);
-    picture.draw(model.set, candidates, {0, 0, 0}, {0, 0, -1}, kShape, 0.0);
+    picture.draw(model.set, candidates, {0, 0, 0}, {0, 0, -1}, kSeenShape, 0.0);
     occludeesInPicture(model.hierarchy, findOccludees(model.hierarchy, 0, 1), picture.view(),
-                       kShape.resolution, occludees);
+                       kSeenShape.resolution, occludees);
   }
   // The occluder whose middle is there: its number in the picture.
   std::uint32_t at(double x, double z) const {
@@ -142,8 +142,8 @@ struct Seen {
     }
     std::set<std::uint32_t> hidden;
     for (std::uint32_t o = 0; o < occludees.size(); ++o) {
-      std::uint32_t pixel = occludees[o].rect.low * kShape.resolution + occludees[o].rect.left;
-      if (hides(buffer, kShape.resolution, occludees[o], pixel)) {
+      std::uint32_t pixel = occludees[o].rect.low * kSeenShape.resolution + occludees[o].rect.left;
+      if (hides(buffer, kSeenShape.resolution, occludees[o], pixel)) {
         hidden.insert(o);
       }
     }

@@ -24,8 +24,8 @@ namespace {
 
 using namespace hand_made;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // What the caller of a culler makes of a scene with closed cracks.
 struct ClosedCulling {
@@ -79,7 +79,7 @@ struct Slit {
 TEST(ClosedScenes, ASlitIsClosedByAWidthAboveItsOwn) {
   const Slit slit(0.001f);
   for (const bool pyramid : {false, true}) {
-    for (const double width : {0.0, 0.0009, kNotANumber, kInfinity, -1.0}) {
+    for (const double width : {0.0, 0.0009, kUndefined, kEndless, -1.0}) {
       EXPECT_TRUE(contains(ClosedCulling(slit.scene, width).kept(frontView(), pyramid), slit.behind))
           << width << " " << pyramid;
     }
@@ -92,7 +92,7 @@ TEST(ClosedScenes, ASlitIsClosedByAWidthAboveItsOwn) {
 
 TEST(ClosedScenes, WithoutAWidthTheSceneIsTheSame) {
   const Slit slit(0.001f);
-  for (const double width : {0.0, -1.0, kNotANumber, kInfinity}) {
+  for (const double width : {0.0, -1.0, kUndefined, kEndless}) {
     const ClosedScene closed = closeCracks(slit.scene.view(), width);
     EXPECT_EQ(closed.indices, slit.scene.indices);
     EXPECT_EQ(closed.slack, 0.0);
@@ -248,7 +248,7 @@ TEST(ClosedScenes, HideNothingThatShowsOtherThanBesideAnEdge) {
             continue;
           }
           beside += 1;
-          double nearest = kInfinity;
+          double nearest = kEndless;
           for (std::size_t i = 0; i < given.indices.size(); ++i) {
             const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
             nearest = std::min(nearest, distanceOfSegments(view.eye, decision.witness.point,

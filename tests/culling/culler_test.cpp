@@ -1,4 +1,5 @@
 #include "sightline/occluders/occluder_database.h"
+#include "tests/culling/kept_objects.h"
 #include "tests/support/any_culler.h"
 
 #include <gtest/gtest.h>
@@ -17,16 +18,9 @@ namespace {
 
 using namespace demo_frames;
 
-using Objects = std::vector<ObjectId>;
-
-Objects visibleOf(AnyCuller& culler, const View& view) {
-  culler.cull(view);
-  return {culler.visible().begin(), culler.visible().end()};
-}
-
-bool includesAll(const Objects& large, const Objects& small) {
-  return std::includes(large.begin(), large.end(), small.begin(), small.end());
-}
+using kept_objects::includesAll;
+using kept_objects::Objects;
+using kept_objects::visibleOf;
 
 // The number of objects that a culler keeps, and the number of those in the frustum.
 struct Share {

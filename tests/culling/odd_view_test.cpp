@@ -15,7 +15,7 @@ using namespace demo_frames;
 
 using Objects = std::vector<ObjectId>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kOddNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // A wall, a crate behind it, a crate beside it, a crate behind the viewer, and a tiny box right in front of
@@ -98,7 +98,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   std::vector<View> views;
   for (double View::*member :
        {&View::near, &View::far, &View::aspect, GetParam() ? &View::ortho_height : &View::tan_half_fovy}) {
-    for (const double bad : {-1.0, kNan}) {
+    for (const double bad : {-1.0, kOddNumber}) {
       views.push_back(scene_.view);
       views.back().*member = bad;
     }
@@ -107,7 +107,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   views.back().near = 2000.0;  // beyond the far plane
   for (Vec3d View::*vector : {&View::eye, &View::right, &View::up, &View::forward}) {
     views.push_back(scene_.view);
-    (views.back().*vector).x = kNan;
+    (views.back().*vector).x = kOddNumber;
   }
   views.push_back(scene_.view);
   views.back().forward = {};

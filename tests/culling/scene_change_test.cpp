@@ -9,6 +9,7 @@
 #include "oracle/exact_visibility.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
+#include "tests/culling/kept_objects.h"
 #include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
@@ -17,12 +18,8 @@ namespace {
 using namespace demo_frames;
 using fake_sets::FakeSets;
 
-using Objects = std::vector<ObjectId>;
-
-Objects visibleOf(AnyCuller& culler, const View& view) {
-  culler.cull(view);
-  return {culler.visible().begin(), culler.visible().end()};
-}
+using kept_objects::Objects;
+using kept_objects::visibleOf;
 
 Objects firstObjects(std::size_t count) {
   Objects objects;

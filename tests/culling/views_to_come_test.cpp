@@ -323,11 +323,11 @@ class SeenScene {
   ExactVisibility exact;
 };
 
-const SeenScene& city() {
+const SeenScene& seenCity() {
   static const SeenScene kCity(demo_frames::smallCity());
   return kCity;
 }
-const SeenScene& building() {
+const SeenScene& seenBuilding() {
   static const SeenScene kBuilding(demo_frames::smallBuilding());
   return kBuilding;
 }
@@ -407,9 +407,10 @@ void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<con
 
 TEST(ViewsAtOnce, WhatIsSeenIsKeptInFramesThatHoldAnAnswer) {
   for (const std::uint32_t count : {2u, 6u, 16u}) {
-    Culler in_city = city().culler(count), in_building = building().culler(count);
-    expectWhatIsSeenIsKept(city(), in_city, wander(city(), count, 120), "city " + std::to_string(count));
-    expectWhatIsSeenIsKept(building(), in_building, wander(building(), count, 120),
+    Culler in_city = seenCity().culler(count), in_building = seenBuilding().culler(count);
+    expectWhatIsSeenIsKept(seenCity(), in_city, wander(seenCity(), count, 120),
+                           "city " + std::to_string(count));
+    expectWhatIsSeenIsKept(seenBuilding(), in_building, wander(seenBuilding(), count, 120),
                            "building " + std::to_string(count));
   }
 }
@@ -418,15 +419,15 @@ TEST(ViewsAtOnce, WhatIsSeenIsKeptWithFinerBuffersToo) {
   DepthPyramidMethodSettings settings = SeenScene::kAll;
   settings.raster = {.width = 64, .height = 36};
   settings.focus.worth = 1e9;
-  Culler culler = city().culler(6, settings);
-  expectWhatIsSeenIsKept(city(), culler, wander(city(), 77, 120), "city, finer buffers");
+  Culler culler = seenCity().culler(6, settings);
+  expectWhatIsSeenIsKept(seenCity(), culler, wander(seenCity(), 77, 120), "city, finer buffers");
 }
 
 // A camera at rest sees the same in all frames of an answer, and finds it again.
 TEST(ViewsAtOnce, AtRestAllFramesKeepTheSameAndOnlyEveryNthIsCulled) {
-  const View view = city().demo.frames(city().demo.scene.paths[0], 40, 1)[0];
+  const View view = seenCity().demo.frames(seenCity().demo.scene.paths[0], 40, 1)[0];
   constexpr std::uint32_t kCount = 5;
-  Culler culler = city().culler(kCount);
+  Culler culler = seenCity().culler(kCount);
   culler.cull(view);
   EXPECT_FALSE(culler.stats().held);
   std::vector<ObjectId> kept;
@@ -470,7 +471,7 @@ std::size_t heldFrames(Culler& culler, std::span<const View> views, const Occlud
 }
 
 TEST(ViewsAtOnce, OnlyWhatHidesForAllViewersIsHeld) {
-  const SeenScene& seen = city();
+  const SeenScene& seen = seenCity();
   const std::vector<View> views = slowWalk(seen, 24);
   Culler culler = seen.culler(8);
   EXPECT_GT(heldFrames(culler, views), 8u);
@@ -505,7 +506,7 @@ TEST(ViewsAtOnce, OnlyWhatHidesForAllViewersIsHeld) {
 }
 
 TEST(ViewsAtOnce, ViewsThatAreNotPlannedForAreCulledByThemselves) {
-  const SeenScene& seen = city();
+  const SeenScene& seen = seenCity();
   const View view = seen.demo.frames(seen.demo.scene.paths[0], 40, 1)[0];
   Culler culler = seen.culler(8);
   const auto startHolding = [&] {
@@ -541,7 +542,7 @@ TEST(ViewsAtOnce, ViewsThatAreNotPlannedForAreCulledByThemselves) {
 
 // What hid half of the objects is gone.
 TEST(ViewsAtOnce, ResetForgetsTheAnswer) {
-  const SeenScene& seen = city();
+  const SeenScene& seen = seenCity();
   const View view = seen.demo.frames(seen.demo.scene.paths[0], 40, 1)[0];
   Culler culler = seen.culler(8);
   for (int frame = 0; frame < 4; ++frame) {

@@ -10,6 +10,7 @@
 #include "oracle/exact_visibility.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
+#include "tests/culling/kept_objects.h"
 
 namespace sightline {
 namespace {
@@ -18,20 +19,13 @@ using namespace demo_frames;
 using fake_sets::FakeSets;
 using fake_sets::randomMembers;
 
-using Objects = std::vector<ObjectId>;
+using kept_objects::includesAll;
+using kept_objects::Objects;
+using kept_objects::visibleOf;
 
 AnyCuller cullerWith(const DemoScene& demo, HierarchyKind kind, AnySettings settings, VisibleSets* sets) {
   return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings,
                    {&demo.database, &demo.detail_database}, sets);
-}
-
-Objects visibleOf(AnyCuller& culler, const View& view) {
-  culler.cull(view);
-  return {culler.visible().begin(), culler.visible().end()};
-}
-
-bool includesAll(const Objects& large, const Objects& small) {
-  return std::includes(large.begin(), large.end(), small.begin(), small.end());
 }
 
 Objects within(const Objects& objects, const std::vector<bool>& members) {

@@ -36,7 +36,7 @@ constexpr double kBeside = 1e-4;       // of the distance: how far beside the po
 constexpr double kRounding = 0x1p-21;  // of the distance: above what single precision moves a ray by
 constexpr double kBefore = 2e-4;       // of the distance: what a visible point may lie behind
 constexpr double kBehind = 1e-6;       // of the distance: what a hidden point must lie behind
-constexpr double kPage = 720.0;
+constexpr double kPageOfRays = 720.0;
 
 class Rays {
  public:
@@ -89,7 +89,7 @@ void checkLine(const SceneView& scene, const View& view, const FeatureLine& line
   const Vec3d a(scene.positions[line.a]);
   const Vec3d b(scene.positions[line.b]);
   const auto at = [&](double share) { return a + (b - a) * share; };
-  const double page = (view.orthographic ? view.ortho_height : 2.0 * view.tan_half_fovy) / kPage;
+  const double page = (view.orthographic ? view.ortho_height : 2.0 * view.tan_half_fovy) / kPageOfRays;
   for (const LinePiece& piece : pieces) {
     // A stroke shorter than the tolerance is not checked.
     const double size = std::hypot(piece.to.x - piece.from.x, piece.to.y - piece.from.y) * page;
@@ -131,7 +131,7 @@ Tally check(const Scene& scene, const View& view, std::size_t every, std::uint32
                  [&](const FeatureLine&) { return count++ % every == 0; });
   }
   HiddenLines hidden;
-  hidden.setView(of, view, kPage);
+  hidden.setView(of, view, kPageOfRays);
   Rays rays(of, view);
   std::mt19937 random(seed);
   Tally tally;

@@ -348,7 +348,7 @@ TEST(GltfHostile, ContainersThatLieAreRefused) {
   EXPECT_NE(with(8, 4).find("less than its own header"), std::string::npos);
   EXPECT_NE(with(12, 0xffffffff).find("chunk 0: has 4294967295 bytes"), std::string::npos);
   EXPECT_NE(with(16, 0x004e4942).find("the first chunk must be JSON"), std::string::npos);
-  EXPECT_EQ(errorOf(""), "scene.glb: the file is empty");
+  EXPECT_EQ(test::errorOf(""), "scene.glb: the file is empty");
 }
 
 class GltfFiles : public testing::Test {

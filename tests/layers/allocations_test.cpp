@@ -22,10 +22,6 @@
 namespace sightline::layers {
 namespace {
 
-bool ask(void* graph, std::uint32_t front, std::uint32_t back) {
-  return static_cast<GraphSource*>(graph)->occludes(front, back);
-}
-
 TEST(Sorts, DoNotAllocateOnceTheyHaveSortedAsMuch) {
   std::mt19937 random(3);
   const std::vector<std::uint32_t> previous = shuffledOrder(60, random);
@@ -43,7 +39,8 @@ TEST(Sorts, DoNotAllocateOnceTheyHaveSortedAsMuch) {
     before = allocations.load();
     graph.reset();
     depth_first.sort(previous, graph, order);
-    conditioned = conditioning.sort(std::span(keys).first(order.groups()), keys, {ask, &graph}, {}, order);
+    conditioned =
+        conditioning.sort(std::span(keys).first(order.groups()), keys, {askGraph, &graph}, {}, order);
   }
   EXPECT_EQ(allocations.load() - before, 0u);
   EXPECT_GT(conditioned, 0u);

@@ -76,7 +76,7 @@ Scene ring(std::uint32_t n) {
 }
 
 // Returns groups of up to ten layers: single layers, rings with chords, chains of rings, or any graph.
-Scene randomScene(std::mt19937& random) {
+Scene randomLayers(std::mt19937& random) {
   std::vector<std::uint32_t> sizes(1 + random() % 3);
   for (std::uint32_t& size : sizes) {
     size = static_cast<std::uint32_t>(1 + random() % 10);
@@ -190,7 +190,7 @@ TEST(CompositingProgram, OfAnyGraphWithoutPairsShowsWhatTheSortedFragmentsShow) 
   for (unsigned seed = 0; seed < 1500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Scene scene = randomScene(random);
+    const Scene scene = randomLayers(random);
     ASSERT_NO_FATAL_FAILURE(expectRightAtRandomPixels(scene, random, 20));
     deepest = std::max(deepest, randomCover(scene, random).size());
   }
@@ -283,7 +283,7 @@ TEST(CompositingProgram, AtItsCheapestTakesNoMoreOperationsThanEitherForm) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Scene scene = randomScene(random);
+    const Scene scene = randomLayers(random);
     const auto sum = countSteps(compiler.compile(scene.frame, kSumOfOuts).steps).operations();
     const auto atop = countSteps(compiler.compile(scene.frame, kOverAtop).steps).operations();
     const auto cheapest = countSteps(compiler.compile(scene.frame, kCheapest).steps).operations();
@@ -370,7 +370,7 @@ TEST(CompositingProgram, TakesAsManyOperationsAsThePlainRecursion) {
   for (unsigned seed = 0; seed < 600; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    Scene scene = randomScene(random);
+    Scene scene = randomLayers(random);
     if (seed % 4 == 0) {  // larger groups, whose cheapest program uses both forms
       scene = Scene({30});
       scene.addRing(0, 30);
@@ -394,7 +394,7 @@ TEST(CompositingProgram, NamesEveryLayerAndNoOtherAndUsesRegistersAfterTheyAreSt
   for (unsigned seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Scene scene = randomScene(random);
+    const Scene scene = randomLayers(random);
     for (const CompositingForm form : kForms) {
       const CompositingProgram& program = compiler.compile(scene.frame, form);
       ASSERT_TRUE(checkProgram(program.steps, scene.layers()));
@@ -417,7 +417,7 @@ TEST(CompositingProgram, WithoutALayerShowsWhatAnEmptyImageInItsPlaceShows) {
   for (unsigned seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Scene scene = randomScene(random);
+    const Scene scene = randomLayers(random);
     std::vector<LayerId> left_out;
     for (std::size_t i = 0; i < scene.layers(); ++i) {
       if (random() % 3 == 0) {
@@ -459,7 +459,7 @@ TEST(CompositingProgram, IsTheSameFromACompilerThatHasSeenOtherFrames) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Scene scene = randomScene(random);
+    const Scene scene = randomLayers(random);
     for (const CompositingForm form : kForms) {
       CompositingCompiler fresh;
       ASSERT_EQ(used.compile(scene.frame, form).steps, fresh.compile(scene.frame, form).steps);

@@ -12,10 +12,6 @@
 namespace sightline::layers {
 namespace {
 
-bool ask(void* graph, std::uint32_t front, std::uint32_t back) {
-  return static_cast<GraphSource*>(graph)->occludes(front, back);
-}
-
 GroupedOrder singles(std::span<const std::uint32_t> parts) {
   GroupedOrder order;
   order.parts.assign(parts.begin(), parts.end());
@@ -48,7 +44,7 @@ TEST(ConditioningSort, GroupsThatDoNotOccludeEachOtherAreSortedByTheirKeysAndTie
   GroupedOrder order = singles(std::vector<std::uint32_t>{5, 3, 0, 1, 4, 2});
   const std::vector<double> keys{2, 1, 2, 3, 1, 3};  // one per part
   const std::uint64_t moved =
-      ConditioningSort().sort(std::vector<double>{3, 3, 2, 1, 1, 2}, keys, {ask, &graph}, {}, order);
+      ConditioningSort().sort(std::vector<double>{3, 3, 2, 1, 1, 2}, keys, {askGraph, &graph}, {}, order);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{1, 4, 0, 2, 5, 3}));
   EXPECT_EQ(order.first_of, identityOrder(7));
   EXPECT_EQ(moved, 4u);
@@ -60,7 +56,7 @@ TEST(ConditioningSort, AGroupStopsBehindOneThatOccludesIt) {
   graph.add(0, 2);
   GroupedOrder order = singles(std::vector<std::uint32_t>{0, 1, 2});
   const std::vector<double> keys{3, 2, 1};
-  ConditioningSort().sort(keys, keys, {ask, &graph}, {}, order);
+  ConditioningSort().sort(keys, keys, {askGraph, &graph}, {}, order);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{1, 0, 2}));
 }
 
@@ -70,7 +66,7 @@ TEST(ConditioningSort, AGroupMovesPastOneThatItOccludes) {
   graph.add(1, 0);
   GroupedOrder order = singles(std::vector<std::uint32_t>{0, 1});
   const std::vector<double> keys{2, 1};
-  EXPECT_EQ(ConditioningSort().sort(keys, keys, {ask, &graph}, {}, order), 1u);
+  EXPECT_EQ(ConditioningSort().sort(keys, keys, {askGraph, &graph}, {}, order), 1u);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{1, 0}));
 }
 
@@ -83,7 +79,7 @@ TEST(ConditioningSort, PartsOfAGroupAreSortedByTheirKeysWhateverOccludesThem) {
   order.parts = {0, 1, 2, 3};
   order.first_of = {0, 4};
   const std::vector<double> keys{2, std::numeric_limits<double>::quiet_NaN(), 2, 1};
-  EXPECT_EQ(ConditioningSort().sort(std::vector<double>{1}, keys, {ask, &graph}, {}, order), 0u);
+  EXPECT_EQ(ConditioningSort().sort(std::vector<double>{1}, keys, {askGraph, &graph}, {}, order), 0u);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{3, 0, 2, 1}));
 }
 
@@ -101,7 +97,7 @@ TEST(ConditioningSort, TheOrderStaysValidAndNoAdjacentPairThatMayBeSwappedIsLeft
     GroupedOrder order;
     DepthFirstSort().sort(shuffledOrder(parts, random), graph, order);
     const std::vector<double> before = minKeys(order, part_keys);
-    const std::uint64_t moved = conditioning.sort(before, part_keys, {ask, &graph}, {}, order);
+    const std::uint64_t moved = conditioning.sort(before, part_keys, {askGraph, &graph}, {}, order);
     ASSERT_EQ(faultOf(order, graph, componentsOf(graph)), "");
     const std::vector<double> after = minKeys(order, part_keys);
     EXPECT_LE(inversions(after), inversions(before));
@@ -128,7 +124,7 @@ TEST(ConditioningSort, NoMorePairsAreAskedAboutThanTheLimit) {
   for (const std::uint64_t most : {0u, 1u, 2u, 10u, 100u, 434u, 435u, 1000u}) {
     GroupedOrder order = singles(parts);
     graph.reset();
-    ConditioningSort().sort(keys, keys, {ask, &graph}, {.max_tests = most}, order);
+    ConditioningSort().sort(keys, keys, {askGraph, &graph}, {.max_tests = most}, order);
     EXPECT_EQ(graph.pair_questions, std::min<std::uint64_t>(most, 30 * 29 / 2));
     std::vector<std::uint32_t> sorted = order.parts;
     std::sort(sorted.begin(), sorted.end());
@@ -140,7 +136,7 @@ TEST(ConditioningSort, KeysThatAreNotNumbersGoBehindAllOthers) {
   GraphSource graph(3);
   GroupedOrder order = singles(std::vector<std::uint32_t>{0, 1, 2});
   const std::vector<double> keys{std::numeric_limits<double>::quiet_NaN(), 5, 1};
-  ConditioningSort().sort(keys, keys, {ask, &graph}, {}, order);
+  ConditioningSort().sort(keys, keys, {askGraph, &graph}, {}, order);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{2, 1, 0}));
 }
 

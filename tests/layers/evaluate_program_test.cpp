@@ -71,11 +71,11 @@ bool sameBits(const ShapedPixel& a, const ShapedPixel& b) {
   return std::memcmp(&a, &b, sizeof(ShapedPixel)) == 0;
 }
 
-constexpr CompositingForm kForms[] = {CompositingForm::kSumOfOuts, CompositingForm::kOverAtop,
-                                      CompositingForm::kCheapest};
+constexpr CompositingForm kAllForms[] = {CompositingForm::kSumOfOuts, CompositingForm::kOverAtop,
+                                         CompositingForm::kCheapest};
 
 TEST(Evaluate, GivesTheBitsOfASinglePixelWhateverTheScratch) {
-  for (const CompositingForm form : kForms) {
+  for (const CompositingForm form : kAllForms) {
     const Fixture f(form);
     for (const std::size_t scratch :
          {std::size_t{2}, std::size_t{3}, std::size_t{16}, std::size_t{26}, kCompositingScratch}) {
@@ -119,7 +119,7 @@ TEST(Evaluate, DoesEachOperationAsDefinedOnLayersAndRegisters) {
 }
 
 TEST(Evaluate, TakesAnImageWithoutPixelsForATransparentOne) {
-  for (const CompositingForm form : kForms) {
+  for (const CompositingForm form : kAllForms) {
     for (std::size_t missing = 0; missing < 8; ++missing) {
       Fixture f(form);
       f.images[missing].pixels = nullptr;

@@ -13,7 +13,7 @@ namespace {
 
 using shapes::Random;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 Interval randomInterval(Random& random, bool angular) {
   // Uses coarse numbers, so that intervals often just touch.
@@ -24,8 +24,8 @@ Interval randomInterval(Random& random, bool angular) {
     const float low = coarse(-2, 2);
     return random.below(10) == 0 ? Interval{-2, 2} : Interval{low, low + coarse(0, 4)};
   }
-  const float low = random.below(10) == 0 ? -kInfinity : coarse(-3, 3);
-  const float high = random.below(10) == 0 ? kInfinity : std::max(low, coarse(-3, 3));
+  const float low = random.below(10) == 0 ? -kFloatInfinity : coarse(-3, 3);
+  const float high = random.below(10) == 0 ? kFloatInfinity : std::max(low, coarse(-3, 3));
   return {low, high};
 }
 
@@ -209,11 +209,11 @@ TEST(ExtentScan, ComparesOnlyBlocksWhoseUnionOverlapsAndThatHoldActiveParts) {
   // A query compares one block of united rows and the block of the answer, or two if its cell crosses a
   // border.
   EXPECT_LE(blocksOf({1000.0f, 1000.4f}, 1), 3u);
-  EXPECT_EQ(blocksOf({-kInfinity, kInfinity}, table.parts), 1 + kFanOut);
+  EXPECT_EQ(blocksOf({-kFloatInfinity, kFloatInfinity}, table.parts), 1 + kFanOut);
   for (std::uint32_t part = 0; part + kFanOut < table.parts; ++part) {
     scan.setActive(part, false);
   }
-  EXPECT_EQ(blocksOf({-kInfinity, kInfinity}, kFanOut), 2u);
+  EXPECT_EQ(blocksOf({-kFloatInfinity, kFloatInfinity}, kFanOut), 2u);
 }
 
 }  // namespace

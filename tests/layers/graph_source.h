@@ -257,4 +257,9 @@ std::string faultOfSmallGraphs(Sorter& sorter) {
   return "";
 }
 
+// The question that sorts ask, of a GraphSource.
+inline bool askGraph(void* graph, std::uint32_t front, std::uint32_t back) {
+  return static_cast<GraphSource*>(graph)->occludes(front, back);
+}
+
 }  // namespace sightline::layers

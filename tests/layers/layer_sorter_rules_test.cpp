@@ -4,26 +4,21 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "sightline/layers/compositing.h"
 #include "tests/layers/made_parts.h"
 #include "tests/layers/sorter_choices.h"
+#include "tests/support/not_finite.h"
 
 namespace sightline {
 namespace {
 
 using namespace made;
-using Place = PartSettings::Place;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-MadePart solid(const Points& points, const PartSettings& settings = {}) {
-  return {.hulls = {points}, .world_from_part = {}, .settings = settings, .enabled = true};
-}
+using PartPlace = PartSettings::Place;
+using test::kInfinity;
+using test::kNan;
 
 std::vector<Group> groupsOf(const LayerOrder& order) {
   return Answer(order).in_order;
@@ -143,10 +138,11 @@ TEST(LayerSorterRules, ContentIsBetweenTheFrontAndTheBackOfItsContainer) {
 
 TEST(LayerSorterRules, OverlaysAreFirstAndBackdropsLastByNumber) {
   const Points cube = shapes::cube();
-  const MadeScene scene{{solid(cube, {.place = Place::kBackdrop}), solid(cube, {.place = Place::kOverlay}),
-                         solid(cube), solid(cube, {.place = Place::kBackdrop}),
-                         solid(cube, {.place = Place::kOverlay}), solid(shapes::moved(cube, {0, 0, 4}))},
-                        viewFrom({0, 0, 9})};
+  const MadeScene scene{
+      {solid(cube, {.place = PartPlace::kBackdrop}), solid(cube, {.place = PartPlace::kOverlay}), solid(cube),
+       solid(cube, {.place = PartPlace::kBackdrop}), solid(cube, {.place = PartPlace::kOverlay}),
+       solid(shapes::moved(cube, {0, 0, 4}))},
+      viewFrom({0, 0, 9})};
   for (const Way& way : allWays(true)) {
     SCOPED_TRACE(way.name);
     LayerSorter sorter = sorterOf(scene, way.settings);
@@ -162,14 +158,15 @@ TEST(LayerSorterRules, OverlaysAreFirstAndBackdropsLastByNumber) {
 
 TEST(LayerSorterRules, DepthBufferedPartsAreOneGroupBehindWhatIsSorted) {
   const Points cube = shapes::cube();
-  const auto at = [&](double z, Place place) {
+  const auto at = [&](double z, PartPlace place) {
     return solid(shapes::moved(cube, {0, 0, z}), {.place = place});
   };
   // Depth-buffered ones lie before, between and behind the sorted ones, and one of them intersects part 1.
-  const MadeScene scene{{at(7, Place::kDepthBuffered), at(0, Place::kSorted), at(0.5, Place::kDepthBuffered),
-                         at(4, Place::kSorted), at(-9, Place::kBackdrop), at(-5, Place::kDepthBuffered),
-                         at(9, Place::kOverlay)},
-                        viewFrom({0, 0, 20})};
+  const MadeScene scene{
+      {at(7, PartPlace::kDepthBuffered), at(0, PartPlace::kSorted), at(0.5, PartPlace::kDepthBuffered),
+       at(4, PartPlace::kSorted), at(-9, PartPlace::kBackdrop), at(-5, PartPlace::kDepthBuffered),
+       at(9, PartPlace::kOverlay)},
+      viewFrom({0, 0, 20})};
   for (const Way& way : allWays(true)) {
     SCOPED_TRACE(way.name);
     LayerSorter sorter = sorterOf(scene, way.settings);

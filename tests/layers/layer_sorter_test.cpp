@@ -284,10 +284,6 @@ TEST(LayerSorter, MissesNothingAtAnyScale) {
   }
 }
 
-MadePart solid(const Points& points) {
-  return {.hulls = {points}, .world_from_part = {}, .settings = {}, .enabled = true};
-}
-
 TEST(LayerSorter, WhatCoincidesOrTouchesIsOneGroup) {
   const Points cube = shapes::cube();
   for (const Points& other :

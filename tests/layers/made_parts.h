@@ -32,6 +32,11 @@ struct MadePart {
   bool enabled = true;
 };
 
+// A part of one hull that is not moved.
+inline MadePart solid(const Points& points, const PartSettings& settings = {}) {
+  return {.hulls = {points}, .world_from_part = {}, .settings = settings, .enabled = true};
+}
+
 struct MadeScene {
   std::vector<MadePart> parts;
   View view;

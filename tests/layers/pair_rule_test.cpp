@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "src/layers/pairs/pair_eye.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/not_finite.h"
 
 namespace sightline {
 namespace {
@@ -18,17 +18,17 @@ using shapes::Random;
 constexpr PairOrder kFirstOnly{true, false};
 constexpr PairOrder kSecondOnly{false, true};
 constexpr PairOrder kBoth{true, true};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
+using test::kNan;
 
-View viewFrom(const Vec3d& eye) {
+View eyeAt(const Vec3d& eye) {
   View view;
   view.eye = eye;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   return view;
 }
 
-View viewFromAfar(const Vec3d& towards_eye) {
+View eyeFarTowards(const Vec3d& towards_eye) {
   View view;
   setOrientation(view, -towards_eye, {0, 1, 0});
   view.orthographic = true;
@@ -39,18 +39,18 @@ View viewFromAfar(const Vec3d& towards_eye) {
 
 TEST(PairPlane, ThePartOnTheEyesSideMayOcclude) {
   const PairPlane known{{{0, 2, 0}, -2}};  // y = 1
-  EXPECT_EQ(orderOf(known, viewFrom({5, 1.001, -3})), kFirstOnly);
-  EXPECT_EQ(orderOf(known, viewFrom({5, 0.999, -3})), kSecondOnly);
-  EXPECT_EQ(orderOf(known, viewFromAfar({3, 0.001, 1})), kFirstOnly);
-  EXPECT_EQ(orderOf(known, viewFromAfar({3, -0.001, 1})), kSecondOnly);
+  EXPECT_EQ(orderOf(known, eyeAt({5, 1.001, -3})), kFirstOnly);
+  EXPECT_EQ(orderOf(known, eyeAt({5, 0.999, -3})), kSecondOnly);
+  EXPECT_EQ(orderOf(known, eyeFarTowards({3, 0.001, 1})), kFirstOnly);
+  EXPECT_EQ(orderOf(known, eyeFarTowards({3, -0.001, 1})), kSecondOnly);
 }
 
 TEST(PairPlane, AnEyeInThePlaneLeavesBoth) {
   const PairPlane known{{{1, 1, 1}, -1e6}};
-  EXPECT_EQ(orderOf(known, viewFrom({1e6, 5, -5})), kBoth);
-  EXPECT_EQ(orderOf(known, viewFrom({1e6, 5, -5 + 1e-7})), kBoth) << "within 1e-12 of the coordinates";
-  EXPECT_EQ(orderOf(known, viewFrom({1e6, 5, -5 + 1e-4})), kFirstOnly);
-  EXPECT_EQ(orderOf(known, viewFromAfar({1, 1, -2})), kBoth);
+  EXPECT_EQ(orderOf(known, eyeAt({1e6, 5, -5})), kBoth);
+  EXPECT_EQ(orderOf(known, eyeAt({1e6, 5, -5 + 1e-7})), kBoth) << "within 1e-12 of the coordinates";
+  EXPECT_EQ(orderOf(known, eyeAt({1e6, 5, -5 + 1e-4})), kFirstOnly);
+  EXPECT_EQ(orderOf(known, eyeFarTowards({1, 1, -2})), kBoth);
 }
 
 TEST(PairPlane, LengthOfTheNormalDoesNotMatter) {
@@ -59,7 +59,7 @@ TEST(PairPlane, LengthOfTheNormalDoesNotMatter) {
     for (int i = 0; i < 50; ++i) {
       const Vec3d n = random.direction();
       const double offset = random.number(-2, 2);
-      const View view = viewFrom(random.direction() * 3.0);
+      const View view = eyeAt(random.direction() * 3.0);
       EXPECT_EQ(orderOf(PairPlane{{n * scale, offset * scale}}, view), orderOf(PairPlane{{n, offset}}, view))
           << scale;
     }
@@ -67,18 +67,18 @@ TEST(PairPlane, LengthOfTheNormalDoesNotMatter) {
 }
 
 TEST(PairPlane, NonsenseLeavesBoth) {
-  const View view = viewFrom({1, 2, 3});
+  const View view = eyeAt({1, 2, 3});
   EXPECT_EQ(orderOf(PairPlane{{{0, 0, 0}, 5}}, view), kBoth);
   EXPECT_EQ(orderOf(PairPlane{{{0, kNan, 0}, 5}}, view), kBoth);
   EXPECT_EQ(orderOf(PairPlane{{{0, kInfinity, 0}, 5}}, view), kBoth);
   EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, kNan}}, view), kBoth);
   EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, kInfinity}}, view), kBoth);
-  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, viewFrom({1, kNan, 3})), kBoth);
-  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, viewFrom({kInfinity, 0, 3})), kBoth);
-  View nowhere = viewFromAfar({0, 1, 0});
+  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, eyeAt({1, kNan, 3})), kBoth);
+  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, eyeAt({kInfinity, 0, 3})), kBoth);
+  View nowhere = eyeFarTowards({0, 1, 0});
   nowhere.forward = {0, 0, 0};
   EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, nowhere), kBoth);
-  EXPECT_EQ(orderOf(PairPlane{{{0, 1e300, 0}, 5}}, viewFrom({1, 1e300, 3})), kBoth);
+  EXPECT_EQ(orderOf(PairPlane{{{0, 1e300, 0}, 5}}, eyeAt({1, 1e300, 3})), kBoth);
 }
 
 // Placements of whole numbers, so that the eye's position in the part's space is known exactly.
@@ -95,8 +95,8 @@ TEST(PairPlane, GoesWithAPartThatIsPlacedAnyhow) {
       const double height = dot(n, e) + offset;
       const PairOrder expected = n == Vec3d() || height == 0 ? kBoth : height > 0 ? kFirstOnly : kSecondOnly;
       const PairPlane known{{n, offset}};
-      EXPECT_EQ(orderOf(known, layers::pairEye(viewFrom(placement.point(e)), placement)), expected) << i;
-      View far = viewFromAfar({0, 1, 0});
+      EXPECT_EQ(orderOf(known, layers::pairEye(eyeAt(placement.point(e)), placement)), expected) << i;
+      View far = eyeFarTowards({0, 1, 0});
       far.forward = placement.origin - placement.point(e);
       const double slope = dot(n, e);
       const PairOrder expected_far = n == Vec3d() || slope == 0 ? kBoth
@@ -109,15 +109,15 @@ TEST(PairPlane, GoesWithAPartThatIsPlacedAnyhow) {
 
 TEST(PairPlane, AFlatPlacementLeavesBoth) {
   const layers::Placement flat{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}};
-  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, layers::pairEye(viewFrom({1, 2, 3}), flat)), kBoth);
+  EXPECT_EQ(orderOf(PairPlane{{{0, 1, 0}, 5}}, layers::pairEye(eyeAt({1, 2, 3}), flat)), kBoth);
 }
 
 TEST(PairPlane, FarFromTheOriginWhatRoundingOfTheEyeMayHideLeavesBoth) {
   layers::Placement there;
   there.origin = {1e9, 1e9, 1e9};
   const PairPlane known{{{0, 1, 0}, 0}};
-  EXPECT_EQ(orderOf(known, layers::pairEye(viewFrom({1e9, 1e9 + 1e-6, 1e9}), there)), kBoth);
-  EXPECT_EQ(orderOf(known, layers::pairEye(viewFrom({1e9, 1e9 + 1, 1e9}), there)), kFirstOnly);
+  EXPECT_EQ(orderOf(known, layers::pairEye(eyeAt({1e9, 1e9 + 1e-6, 1e9}), there)), kBoth);
+  EXPECT_EQ(orderOf(known, layers::pairEye(eyeAt({1e9, 1e9 + 1, 1e9}), there)), kFirstOnly);
 }
 
 // Joints: s = 5, r = 3, so the rim's plane is at h = 4 and the cone's apex at l = 25 / 4.
@@ -130,58 +130,58 @@ SphereCylinderJoint threeFourFive() {
 }
 
 TEST(SphereCylinderJoint, BeforeTheRimsPlaneTheCylinderOccludes) {
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({10, 4.001, 0})), kSecondOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, 100, 0})), kSecondOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, 6, 0})), kSecondOnly) << "within the cone, at its apex";
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({10, 4, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({10, 3.999, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({10, 4.001, 0})), kSecondOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, 100, 0})), kSecondOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, 6, 0})), kSecondOnly) << "within the cone, at its apex";
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({10, 4, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({10, 3.999, 0})), kBoth);
 }
 
 TEST(SphereCylinderJoint, InTheConeBehindTheSphereItOccludes) {
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -6, 0})), kFirstOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({14.999, -5, 0})), kFirstOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({15, -5, 0})), kBoth) << "4 a + 3 rho = 25";
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({15.001, -5, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -5, 14.999})), kFirstOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, -6, 0})), kFirstOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({14.999, -5, 0})), kFirstOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({15, -5, 0})), kBoth) << "4 a + 3 rho = 25";
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({15.001, -5, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, -5, 14.999})), kFirstOnly);
 }
 
 TEST(SphereCylinderJoint, FromAfarTheConeIsThatOfItsDirections) {
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({1, 0.001, 0})), kSecondOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({1, 0, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({4, -3, 0})), kBoth) << "along the cone: 4 a + 3 rho = 0";
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({3.999, -3, 0})), kFirstOnly);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({4.001, -3, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFromAfar({0, -1, 0})), kFirstOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({1, 0.001, 0})), kSecondOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({1, 0, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({4, -3, 0})), kBoth) << "along the cone: 4 a + 3 rho = 0";
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({3.999, -3, 0})), kFirstOnly);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({4.001, -3, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeFarTowards({0, -1, 0})), kFirstOnly);
 }
 
 TEST(SphereCylinderJoint, OfEqualRadiiTheConeIsACylinder) {
   SphereCylinderJoint joint;  // both radii are 1
-  EXPECT_EQ(orderOf(joint, viewFrom({0.999, -30, 0})), kFirstOnly);
-  EXPECT_EQ(orderOf(joint, viewFrom({1, -30, 0})), kBoth);
-  EXPECT_EQ(orderOf(joint, viewFrom({1.001, -30, 0})), kBoth);
-  EXPECT_EQ(orderOf(joint, viewFrom({1.5, 0.001, 0})), kSecondOnly);
-  EXPECT_EQ(orderOf(joint, viewFromAfar({0, -1, 0})), kBoth);
-  EXPECT_EQ(orderOf(joint, viewFromAfar({0.1, 1, 0})), kSecondOnly);
+  EXPECT_EQ(orderOf(joint, eyeAt({0.999, -30, 0})), kFirstOnly);
+  EXPECT_EQ(orderOf(joint, eyeAt({1, -30, 0})), kBoth);
+  EXPECT_EQ(orderOf(joint, eyeAt({1.001, -30, 0})), kBoth);
+  EXPECT_EQ(orderOf(joint, eyeAt({1.5, 0.001, 0})), kSecondOnly);
+  EXPECT_EQ(orderOf(joint, eyeFarTowards({0, -1, 0})), kBoth);
+  EXPECT_EQ(orderOf(joint, eyeFarTowards({0.1, 1, 0})), kSecondOnly);
 }
 
 TEST(SphereCylinderJoint, AnEyeInTheSphereLeavesBoth) {
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -4, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -5, 0})), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, 4.5, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, -4, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, -5, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, 4.5, 0})), kBoth);
 }
 
 TEST(SphereCylinderJoint, LengthOfTheAxisDoesNotMatter) {
   for (const double scale : {1e-250, 1e-3, 1e3, 1e250}) {
     SphereCylinderJoint joint = threeFourFive();
     joint.axis = {0, scale, 0};
-    EXPECT_EQ(orderOf(joint, viewFrom({10, 4.001, 0})), kSecondOnly);
-    EXPECT_EQ(orderOf(joint, viewFrom({14.999, -5, 0})), kFirstOnly);
-    EXPECT_EQ(orderOf(joint, viewFrom({15.001, -5, 0})), kBoth);
+    EXPECT_EQ(orderOf(joint, eyeAt({10, 4.001, 0})), kSecondOnly);
+    EXPECT_EQ(orderOf(joint, eyeAt({14.999, -5, 0})), kFirstOnly);
+    EXPECT_EQ(orderOf(joint, eyeAt({15.001, -5, 0})), kBoth);
   }
 }
 
 TEST(SphereCylinderJoint, NonsenseLeavesBoth) {
-  const View view = viewFrom({0, -10, 0});  // the eye sees the sphere alone
+  const View view = eyeAt({0, -10, 0});  // the eye sees the sphere alone
   ASSERT_EQ(orderOf(threeFourFive(), view), kFirstOnly);
   const auto with = [](auto change) {
     SphereCylinderJoint joint = threeFourFive();
@@ -198,7 +198,7 @@ TEST(SphereCylinderJoint, NonsenseLeavesBoth) {
   EXPECT_EQ(orderOf(with([](auto& joint) { joint.axis = {kNan, 1, 0}; }), view), kBoth);
   EXPECT_EQ(orderOf(with([](auto& joint) { joint.axis = {0, kInfinity, 0}; }), view), kBoth);
   EXPECT_EQ(orderOf(with([](auto& joint) { joint.centre = {0, kNan, 0}; }), view), kBoth);
-  EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -kInfinity, 0})), kBoth);
+  EXPECT_EQ(orderOf(threeFourFive(), eyeAt({0, -kInfinity, 0})), kBoth);
 }
 
 // A random joint, and functions that test rays and points of the rim. The cylinder reaches from the rim's
@@ -293,9 +293,9 @@ TEST(SphereCylinderJoint, NoRayContradictsTheOrder) {
       eye = made.joint.centre +
             random.direction() * (made.joint.sphere_radius * (1.0 + 6.0 * random.number(0, 1)));
     }
-    const View near = viewFrom(eye);
+    const View near = eyeAt(eye);
     checkRays(made, near, orderOf(made.joint, near), random);
-    const View far = viewFromAfar(random.direction());
+    const View far = eyeFarTowards(random.direction());
     checkRays(made, far, orderOf(made.joint, far), random);
     if (HasFatalFailure()) {
       return;
@@ -319,7 +319,7 @@ TEST(SphereCylinderJoint, BothOnlyWhereTheRimIsSeenFromBehind) {
       const Vec3d p = made.rimPoint(i * (6.283185307179586 / 720));
       seen = std::max(seen, dot(eye - p, p - made.joint.centre));
     }
-    const PairOrder order = orderOf(made.joint, viewFrom(eye));
+    const PairOrder order = orderOf(made.joint, eyeAt(eye));
     const double scale = made.joint.sphere_radius * length(e);
     if (e.y > made.rim + 1e-9) {
       EXPECT_EQ(order, kSecondOnly);
@@ -345,7 +345,7 @@ TEST(SphereCylinderJoint, OneArcIsFoundFromAsManyDirectionsAsTheSphereOfDirectio
     int both = 0;
     constexpr int kDirections = 20000;
     for (int i = 0; i < kDirections; ++i) {
-      both += orderOf(joint, viewFromAfar(random.direction())) == kBoth ? 1 : 0;
+      both += orderOf(joint, eyeFarTowards(random.direction())) == kBoth ? 1 : 0;
     }
     EXPECT_NEAR(static_cast<double>(both) / kDirections, ratio / 2, 0.015) << ratio;
   }

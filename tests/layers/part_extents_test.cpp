@@ -15,7 +15,7 @@ using Kind = ExtentAxis::Kind;
 using Frame = ExtentAxis::Frame;
 using shapes::Random;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 constexpr long double kHalfTurn = 3.14159265358979323846264338327950288L;
 
 std::vector<ExtentAxis> allKinds() {
@@ -135,7 +135,7 @@ ExtentScene someShapes(Random& random, double scale) {
   ExtentScene scene;
   using namespace shapes;
   scene.addPart(scaled(toothpick(0.7), scale));
-  scene.addPart(scaled(cube(), scale));
+  scene.addPart(scaled(shapes::cube(), scale));
   scene.addPart(scaled(randomBall(random, 60), scale));
   scene.addPart(scaled(randomGrid(random, 40, 3), 0.3 * scale));
   scene.addPart(scaled(randomFlatGrid(random, 30, 3, 2), 0.1 * scale));
@@ -356,7 +356,7 @@ TEST(PartExtents, OfPartsThatAreNotFiniteOverlapEverything) {
     extents.update(view, scene.store, scene.moved, scene.used);
     EXPECT_TRUE(overlaps(extents.table(), extents.query(0u), 1));
     EXPECT_TRUE(overlaps(extents.table(), extents.query(1u), 0));
-    EXPECT_EQ(extents.table().at(2, 0), (Interval{-kInfinity, kInfinity}));
+    EXPECT_EQ(extents.table().at(2, 0), (Interval{-kFloatInfinity, kFloatInfinity}));
     EXPECT_EQ(extents.distanceAlong(2, 0), std::numeric_limits<double>::infinity());
   }
   PartExtents extents(allKinds());
@@ -395,7 +395,7 @@ TEST(PartExtents, AQueryReachesTheEye) {
   EXPECT_NEAR(extents.distanceAlong(2, 0), 18.0, 1e-5);
   EXPECT_NEAR(extents.distanceAlong(2, 1), 12.0, 1e-5);
   extents.update(straightView({0, 0, 8}, true), scene.store, scene.moved, scene.used);
-  EXPECT_EQ(extents.query(0u)[2].high, kInfinity);
+  EXPECT_EQ(extents.query(0u)[2].high, kFloatInfinity);
   EXPECT_NEAR(extents.query(0u)[2].low, -14.0, 1e-5);
   EXPECT_EQ(extents.query(0u)[0], extents.table().at(0, 0));  // the axis is across the rays
   EXPECT_LT(extents.distanceAlong(2, 1), extents.distanceAlong(2, 0));
@@ -457,7 +457,7 @@ TEST(PartExtents, OfAnOrthographicViewArePositionsAcrossIt) {
   EXPECT_NEAR(extents.table().at(0, 0).high, 4.0, 1e-5);
   EXPECT_EQ(extents.query(0u)[0], extents.table().at(0, 0));
   EXPECT_NEAR(extents.table().at(1, 0).high, 2.0, 1e-5);
-  EXPECT_EQ(extents.query(0u)[2].low, -kInfinity);
+  EXPECT_EQ(extents.query(0u)[2].low, -kFloatInfinity);
   EXPECT_NEAR(extents.query(0u)[2].high, 11.0, 1e-5);
   extents.update(straightView({1, 1, 0}), scene.store, scene.moved, scene.used);
   EXPECT_TRUE(extents.table().angular(0));

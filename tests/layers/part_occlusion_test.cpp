@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "tests/layers/part_world.h"
+#include "tests/support/not_finite.h"
 
 namespace sightline::layers {
 namespace {
 
 using shapes::Points;
 using shapes::Random;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
+using test::kNan;
 
 Placement at(const Vec3d& origin) {
   Placement placement;

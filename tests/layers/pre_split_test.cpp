@@ -14,14 +14,13 @@
 namespace sightline {
 namespace {
 
-using scenes::Random;
-using Triangle = std::array<std::uint32_t, 3>;
+using Corners = std::array<std::uint32_t, 3>;
 
 constexpr std::uint64_t kSeed = 20240611;
 
-struct Mesh {
+struct PlainMesh {
   std::vector<Vec3d> positions;
-  std::vector<Triangle> triangles;
+  std::vector<Corners> triangles;
 
   SplitMesh split(const SplitCells& cells, double inflation) const {
     return splitMesh(positions, triangles, cells, inflation);
@@ -43,15 +42,15 @@ struct Mesh {
   }
 };
 
-Vec3d randomPoint(Random& random, double low, double high) {
+Vec3d randomPoint(scenes::Random& random, double low, double high) {
   const double x = random.range(low, high), y = random.range(low, high), z = random.range(low, high);
   return {x, y, z};
 }
 
 // Returns large and small triangles anywhere in the cube from -1 to 1.
-Mesh triangleSoup(std::uint32_t count) {
-  Random random(kSeed);
-  Mesh mesh;
+PlainMesh triangleSoup(std::uint32_t count) {
+  scenes::Random random(kSeed);
+  PlainMesh mesh;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d middle = randomPoint(random, -0.6, 0.6);
     const double reach = random.range(0.02, 0.4);
@@ -64,8 +63,8 @@ Mesh triangleSoup(std::uint32_t count) {
 }
 
 // Returns the square from -1 to 1 at height 0, made of n x n quads.
-Mesh floorOf(std::uint32_t n) {
-  Mesh mesh;
+PlainMesh floorOf(std::uint32_t n) {
+  PlainMesh mesh;
   for (std::uint32_t row = 0; row <= n; ++row) {
     for (std::uint32_t column = 0; column <= n; ++column) {
       mesh.positions.push_back({2.0 * column / n - 1.0, 0.0, 2.0 * row / n - 1.0});
@@ -186,7 +185,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> neighbourCells(const SplitMesh
 }
 
 TEST(PreSplit, PiecesWithoutInflationHaveTheMeshsAreaTriangleByTriangle) {
-  const Mesh mesh = triangleSoup(300);
+  const PlainMesh mesh = triangleSoup(300);
   for (const Case& c : everyKind()) {
     const SplitMesh split = mesh.split(c.cells, 0.0);
     std::vector<double> area(mesh.triangles.size(), 0.0);
@@ -202,7 +201,7 @@ TEST(PreSplit, PiecesWithoutInflationHaveTheMeshsAreaTriangleByTriangle) {
 }
 
 TEST(PreSplit, PiecesLieInTheirInflatedCellsAndOnTheirSourceTriangles) {
-  const Mesh mesh = triangleSoup(200);
+  const PlainMesh mesh = triangleSoup(200);
   for (const Case& c : everyKind()) {
     for (const double inflation : {0.0, 0.2, 1.5}) {
       const SplitMesh split = mesh.split(c.cells, inflation);
@@ -225,8 +224,8 @@ TEST(PreSplit, PiecesLieInTheirInflatedCellsAndOnTheirSourceTriangles) {
 }
 
 TEST(PreSplit, EveryInflatedCellHoldsAllOfTheMeshThatIsInIt) {
-  const Mesh mesh = triangleSoup(100);
-  Random random(kSeed, 1);
+  const PlainMesh mesh = triangleSoup(100);
+  scenes::Random random(kSeed, 1);
   for (const Case& c : everyKind()) {
     const double inflation = 0.2;
     const SplitMesh split = mesh.split(c.cells, inflation);
@@ -254,7 +253,7 @@ TEST(PreSplit, EveryInflatedCellHoldsAllOfTheMeshThatIsInIt) {
 }
 
 TEST(PreSplit, CellsFillSpaceWithoutOverlap) {
-  Random random(kSeed, 2);
+  scenes::Random random(kSeed, 2);
   for (const Case& c : everyKind()) {
     for (int i = 0; i < 500; ++i) {
       const Vec3d p = randomPoint(random, -1.0, 1.0) * (c.fills_space && i % 2 ? 10.0 : 0.6);
@@ -288,7 +287,7 @@ TEST(PreSplit, OverlapIsTheFractionOfTheCellsWidth) {
 }
 
 TEST(PreSplit, PlanesHaveEachUninflatedCellOnItsSide) {
-  Random random(kSeed, 3);
+  scenes::Random random(kSeed, 3);
   for (const Case& c : everyKind()) {
     for (int i = 0; i < 300; ++i) {
       const Vec3d p = randomPoint(random, -1.0, 1.0) * (i % 3 ? 0.8 : 5.0);
@@ -328,7 +327,7 @@ TEST(PreSplit, LargeInflationMakesNeighboursOfCellsFartherApart) {
 }
 
 TEST(PreSplit, PiecesThatShareAPointOfTheMeshAreNeighboursWithTheirCellsPlane) {
-  const Mesh mesh = triangleSoup(150);
+  const PlainMesh mesh = triangleSoup(150);
   for (const Case& c : everyKind()) {
     const SplitMesh split = mesh.split(c.cells, 0.2);
     const auto pairs = neighbourCells(split);
@@ -367,7 +366,7 @@ TEST(PreSplit, AnyTwoSectorsOfACupAreParted) {
 
 TEST(PreSplit, NoPlanePartsHexagonsThoughOnePartsEachPair) {
   const SplitCells cells = hexagonCells({.width = 0.4, .low_u = -1, .high_u = 1, .low_v = -1, .high_v = 1});
-  const Mesh floor = floorOf(3);
+  const PlainMesh floor = floorOf(3);
   const SplitMesh split = floor.split(cells, 0.0);
   EXPECT_NEAR(areaOf(split), 4.0, 1e-12);
   ASSERT_GT(split.neighbours.size(), 60u);
@@ -392,7 +391,7 @@ TEST(PreSplit, NoPlanePartsHexagonsThoughOnePartsEachPair) {
 
 TEST(PreSplit, WhatLiesExactlyBetweenTwoCellsIsInOneOfThem) {
   // Upright triangles in the planes between cells of a grid, of hexagons and of sectors.
-  Mesh wall;
+  PlainMesh wall;
   wall.positions = {{0, 0, -0.9}, {0, 0, 0.9}, {0, 1, 0}, {0.1, -0.3, 0}, {0.9, -0.3, 0}, {0.5, 0.5, 0}};
   wall.triangles = {{0, 1, 2}, {3, 4, 5}, {2, 1, 0}};
   const SplitCells of_hexagons = hexagonCells(
@@ -405,7 +404,7 @@ TEST(PreSplit, WhatLiesExactlyBetweenTwoCellsIsInOneOfThem) {
 }
 
 TEST(PreSplit, CellsThatAreOnlyTouchedGetNothing) {
-  Mesh mesh;  // lies in x <= 0 and touches x = 0 with a vertex and with an edge
+  PlainMesh mesh;  // lies in x <= 0 and touches x = 0 with a vertex and with an edge
   mesh.positions = {{-0.5, 0, 0.1}, {-0.5, 0, 0.5}, {0, 0, 0.2}, {0, 0.5, 0.3}, {-0.5, 0.5, 0.3}};
   mesh.triangles = {{0, 1, 2}, {2, 3, 4}};
   const SplitMesh split = mesh.split(terrainCells(2, 2), 0.0);

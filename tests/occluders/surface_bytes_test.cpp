@@ -106,14 +106,14 @@ TEST(SurfaceBytes, WithNumbersThatDrawingCannotComputeWithTheyAreRefused) {
     const LargeVector<std::byte> bytes_of_set = surfaceBytes(set);
     return !surfacesFrom({bytes_of_set}, village.objects);
   };
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
   EXPECT_FALSE(refuses([](SurfaceSet&) {}));
-  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = kNan; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = kFloatNan; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = 1e30f; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.vertices[0].y = -1.0f / 0.0f; }));
-  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.part_bounds[0].max.z = kNan; }));
-  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.clusters[0].support.offset = double{kNan}; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.part_bounds[0].max.z = kFloatNan; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.clusters[0].support.offset = double{kFloatNan}; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.patches[0].cone_cosine = 2.0f; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.uses[0].value = kLeast; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.patch_chains[0].value = 0; }));

@@ -118,7 +118,7 @@ OccluderSet setOfSolids(std::span<const Solid> solids) {
   return makeOccluders(polygons);
 }
 
-constexpr std::pair<std::uint32_t, std::uint32_t> kSizes[] = {{1, 1}, {16, 16}, {64, 36}, {320, 180}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kBodySizes[] = {{1, 1}, {16, 16}, {64, 36}, {320, 180}};
 
 enum class Place {
   kBefore,          // wholly in view, or nearly
@@ -170,7 +170,7 @@ struct BodyScene {
   BodyScene(Place place, std::uint64_t seed) {
     Random random(seed * 16 + static_cast<std::uint64_t>(place));
     what = "place " + std::to_string(static_cast<int>(place)) + ", seed " + std::to_string(seed);
-    const auto& [width, height] = kSizes[seed % 4];
+    const auto& [width, height] = kBodySizes[seed % 4];
     settings = {width, height};
     const double far_away = seed % 5 == 4 ? 1e4 : 0.0;
     view = viewFrom(Vec3d(far_away, -far_away, 0.5 * far_away), random.point(1.0));

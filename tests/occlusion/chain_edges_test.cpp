@@ -16,7 +16,7 @@
 namespace sightline::occlusion {
 namespace {
 
-constexpr std::uint32_t kWidth = 320, kHeight = 180;
+constexpr std::uint32_t kChainWidth = 320, kChainHeight = 180;
 
 using EdgeBits = std::array<std::uint64_t, 20>;
 
@@ -78,7 +78,7 @@ SurfaceSet randomChains(test::ViewRandom& random, const View& view, std::size_t 
 std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const PixelView& view, std::size_t first,
                               std::size_t count) {
   ChainEdges edges;
-  edges.begin(set, view, view.near * (1.0 + 1e-6), {kWidth, kHeight});
+  edges.begin(set, view, view.near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
   for (std::size_t i = first; i < first + count; ++i) {
     edges.add(static_cast<std::uint32_t>(i), 1);
   }
@@ -102,7 +102,7 @@ TEST(ChainEdges, AreTheSameWithEveryInstructionSetAndInAnyCompany) {
   std::size_t edges = 0, cut = 0;
   for (int n = 0; n < 300; ++n) {
     const View given = test::randomView(random);
-    const PixelView view(given, kWidth, kHeight);
+    const PixelView view(given, kChainWidth, kChainHeight);
     if (!view.sane()) {
       continue;
     }
@@ -138,9 +138,9 @@ TEST(ChainEdges, NothingBeforeTheClipDepthHasAnEdge) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.near = 1.0;
-  EXPECT_TRUE(edgesOf(set, PixelView(view, kWidth, kHeight), 0, 1).empty());
+  EXPECT_TRUE(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).empty());
   view.near = 0.25;
-  EXPECT_EQ(edgesOf(set, PixelView(view, kWidth, kHeight), 0, 1).size(), 1u);
+  EXPECT_EQ(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).size(), 1u);
 }
 
 }  // namespace

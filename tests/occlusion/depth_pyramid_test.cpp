@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-constexpr RasterSettings kSizes[] = {{320, 180}, {64, 64}, {257, 33}};
+constexpr RasterSettings kPyramidSizes[] = {{320, 180}, {64, 64}, {257, 33}};
 
 DepthPyramid pyramidOf(std::span<const OraclePolygon> polygons, const View& view,
                        const RasterSettings& raster = {.width = 256, .height = 256}) {
@@ -90,7 +90,7 @@ TEST(DepthPyramid, ABoxIsComparedByItsOutlineNotByItsRectangle) {
 }
 
 TEST(DepthPyramid, NeverHidesABoxSeenThroughAGap) {
-  for (const RasterSettings& size : kSizes) {
+  for (const RasterSettings& size : kPyramidSizes) {
     forEachGap([&](std::span<const OraclePolygon> walls, const Box& box, const std::string& what) {
       EXPECT_NE(pyramidOf(walls, kLookingBack, size).classify(box), Visibility::kHidden)
           << what << ", buffer " << size.width << " x " << size.height;
@@ -222,7 +222,7 @@ TEST_P(DepthPyramidFamilies, NothingThatARayReachesIsHidden) {
   int hidden = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     RandomScene scene(GetParam(), seed);
-    const DepthPyramid pyramid = pyramidOf(scene.polygons, scene.view, kSizes[seed % 3]);
+    const DepthPyramid pyramid = pyramidOf(scene.polygons, scene.view, kPyramidSizes[seed % 3]);
     for (int b = 0; b < 30; ++b) {
       const Box box = scene.randomBox();
       const Visibility state = pyramid.classify(box);

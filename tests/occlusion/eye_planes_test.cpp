@@ -10,7 +10,7 @@
 namespace sightline::occlusion {
 namespace {
 
-struct Scene {
+struct EyeScene {
   std::vector<EyeShape> shapes;
   std::vector<EyeQuad> quads;
   std::vector<std::uint32_t> list;
@@ -25,8 +25,8 @@ Vec3d direction(std::mt19937_64& random) {
 }
 
 // Returns arbitrary planes: these tests are about the arithmetic only.
-Scene randomScene(std::mt19937_64& random) {
-  Scene scene;
+EyeScene randomScene(std::mt19937_64& random) {
+  EyeScene scene;
   for (std::uint32_t i = 0; i < 40; ++i) {
     EyeShape shape;
     shape.normal = direction(random);
@@ -58,7 +58,7 @@ EyeBox randomBox(std::mt19937_64& random) {
   return EyeBox::of({Vec3f(c - h), Vec3f(c + h)}, {0.1, 0.2, 0.3});
 }
 
-std::vector<EyePlaneTest> testAgainstEyePlanes(const Scene& scene, const EyeBox& box) {
+std::vector<EyePlaneTest> testAgainstEyePlanes(const EyeScene& scene, const EyeBox& box) {
   std::vector<EyePlaneTest> tests(scene.list.size());
   tests.resize(occlusion::testAgainstEyePlanes(scene.shapes, scene.quads, scene.list, box, tests));
   return tests;
@@ -69,7 +69,7 @@ TEST(EyePlanes, EveryInstructionSetGivesTheSameAnswers) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   ASSERT_FALSE(targets.empty());
   for (int round = 0; round < 200; ++round) {
-    const Scene scene = randomScene(random);
+    const EyeScene scene = randomScene(random);
     const EyeBox box = randomBox(random);
     const std::vector<EyePlaneTest> first = testAgainstEyePlanes(scene, box);
     for (const std::int64_t target : targets) {
@@ -91,7 +91,7 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
   std::mt19937_64 random(2);
   int failing_edges = 0, satisfied_edges = 0, touched = 0, behind = 0;
   for (int round = 0; round < 500; ++round) {
-    const Scene scene = randomScene(random);
+    const EyeScene scene = randomScene(random);
     const EyeBox box = randomBox(random);
     const std::vector<EyePlaneTest> tests = testAgainstEyePlanes(scene, box);
     for (std::size_t i = 0; i < tests.size(); ++i) {
@@ -143,7 +143,7 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
 
 TEST(EyePlanes, LookingEndsAtTheFirstThatHidesTheBox) {
   // Five half-spaces that have everything behind them at z < -1.
-  Scene scene;
+  EyeScene scene;
   for (std::uint32_t i = 0; i < 5; ++i) {
     EyeShape shape;
     shape.normal = {0, 0, 1};

@@ -20,7 +20,8 @@ namespace {
 using namespace test;
 using Wide = long double;
 
-DepthPyramid pyramidOf(std::span<const OraclePolygon> walls, const View& view, const RasterSettings& raster) {
+DepthPyramid pyramidOfWalls(std::span<const OraclePolygon> walls, const View& view,
+                            const RasterSettings& raster) {
   DepthPyramid pyramid({.raster = raster});
   const OccluderSet set = setOf(walls);
   pyramid.build(view, set, all(set));
@@ -82,7 +83,7 @@ TEST(NearBoxes, AWallBesideTheEyeHidesWhatRunsAlongBehindIt) {
   // The wall's near end is outside the view, and so is that of the box.
   const std::vector<OraclePolygon> walls{
       {{{0.9f, -9, -30}, {0.9f, -9, -0.5f}, {0.9f, 9, -0.5f}, {0.9f, 9, -30}}, true}};
-  const DepthPyramid pyramid = pyramidOf(walls, kLookingBack, {.width = 256, .height = 256});
+  const DepthPyramid pyramid = pyramidOfWalls(walls, kLookingBack, {.width = 256, .height = 256});
   const auto classify = [&](const Box& box) {
     EXPECT_TRUE(reachesNearPlane(kLookingBack, pyramid.depthBuffer(), box));
     return pyramid.classify(box);
@@ -100,12 +101,13 @@ TEST(NearBoxes, AboveAndBelowAndInAnOrthographicView) {
   View view = viewFrom({0, 0, 0}, {0, -0.3, -1});
   const std::vector<OraclePolygon> walls{{{{-50, -1, 5}, {50, -1, 5}, {50, -1, -90}, {-50, -1, -90}}, true}};
   const RasterSettings raster{.width = 128, .height = 64};
-  EXPECT_EQ(pyramidOf(walls, view, raster).classify({{-3, -4, -6}, {3, -1.5f, 9}}), Visibility::kHidden);
-  EXPECT_EQ(pyramidOf(walls, view, raster).classify({{-3, -4, -6}, {3, -0.5f, 9}}), Visibility::kPartial);
+  EXPECT_EQ(pyramidOfWalls(walls, view, raster).classify({{-3, -4, -6}, {3, -1.5f, 9}}), Visibility::kHidden);
+  EXPECT_EQ(pyramidOfWalls(walls, view, raster).classify({{-3, -4, -6}, {3, -0.5f, 9}}),
+            Visibility::kPartial);
   view.orthographic = true;
   view.ortho_height = 1.0;
-  EXPECT_EQ(pyramidOf(walls, view, raster).classify({{-3, -6, -9}, {3, -4, 9}}), Visibility::kHidden);
-  EXPECT_EQ(pyramidOf(walls, view, raster).classify({{-3, -6, -9}, {3, 0, 9}}), Visibility::kPartial);
+  EXPECT_EQ(pyramidOfWalls(walls, view, raster).classify({{-3, -6, -9}, {3, -4, 9}}), Visibility::kHidden);
+  EXPECT_EQ(pyramidOfWalls(walls, view, raster).classify({{-3, -6, -9}, {3, 0, 9}}), Visibility::kPartial);
 }
 
 TEST(NearBoxes, WhereTheyAreHiddenNoRayReachesThem) {
@@ -129,7 +131,7 @@ TEST(NearBoxes, WhereTheyAreHiddenNoRayReachesThem) {
           {{Vec3f(middle - u - v), Vec3f(middle + u - v), Vec3f(middle + u + v), Vec3f(middle - u + v)},
            true});
     }
-    const DepthPyramid pyramid = pyramidOf(walls, view, sizes[seed % 3]);
+    const DepthPyramid pyramid = pyramidOfWalls(walls, view, sizes[seed % 3]);
     const DepthBufferView buffer = pyramid.depthBuffer();
     if (std::ranges::none_of(buffer.reciprocal_depth, [](float depth) { return depth > kUncovered; })) {
       continue;  // an empty buffer hides nothing

@@ -9,8 +9,8 @@ namespace {
 
 using namespace test;
 
-constexpr OcclusionTreeVariant kVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
+constexpr OcclusionTreeVariant kTreeVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
+                                                  OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
 
 Visibility ask(OcclusionTreeVariant variant, const View& view, std::span<const OraclePolygon> polygons,
                const Box& box) {
@@ -22,7 +22,7 @@ Visibility ask(OcclusionTreeVariant variant, const View& view, std::span<const O
 
 TEST(OcclusionTree, HidesABoxBehindOneWall) {
   const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5)};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -4}, {1, 1, -3}}), Visibility::kVisible);
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-9, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
@@ -31,14 +31,14 @@ TEST(OcclusionTree, HidesABoxBehindOneWall) {
 }
 
 TEST(OcclusionTree, WithoutOccludersHidesNothingInView) {
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, {}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
   }
 }
 
 TEST(OcclusionTree, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
   const std::vector<OraclePolygon> walls{wall(-4, 4, -4, 4, -5)};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_NE(ask(variant, kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5}}), Visibility::kHidden);
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5.001f}}), Visibility::kHidden);
   }
@@ -46,7 +46,7 @@ TEST(OcclusionTree, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
 
 TEST(OcclusionTree, AdjoiningWallsHideABoxAcrossTheirSharedEdgeTogether) {
   const std::vector<OraclePolygon> walls{wall(-4, 0.3f, -4, 4, -5), wall(0.3f, 4, -4, 4, -5)};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
   }
 }
@@ -57,7 +57,7 @@ TEST(OcclusionTree, TheSidesOfACornerHideTogether) {
       {{{-3, -2, -8}, {0, -2, -5}, {0, 2, -5}, {-3, 2, -8}}, false},
       {{{0, -2, -5}, {3, -2, -8}, {3, 2, -8}, {0, 2, -5}}, false},
   };
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-0.5, -0.5, -12}, {0.5, 0.5, -10}}), Visibility::kHidden);
   }
 }
@@ -73,7 +73,7 @@ TEST(OcclusionTree, ASharedPartWithoutRoomTakesNothingFromTheRestOfTheEdge) {
   std::vector<OraclePolygon> three = two;
   three.push_back({{{end, 0, -5}, {0, 0, -5}, {4, 0, -5}, {4, 4, -5}, {end, 4, -5}}, true});
   const Box behind_the_seam{{-7, -1, -12}, {-5.5f, 1, -11}}, behind_the_gap{{-3, -1, -12}, {-2, 1, -11}};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     for (const auto& walls : {two, three}) {
       EXPECT_EQ(ask(variant, kLookingBack, walls, behind_the_seam), Visibility::kHidden) << walls.size();
       EXPECT_NE(ask(variant, kLookingBack, walls, behind_the_gap), Visibility::kHidden) << walls.size();
@@ -89,7 +89,7 @@ TEST(OcclusionTree, DisconnectedWallsAtDifferentDepthsHideTogether) {
 
 TEST(OcclusionTree, NeverHidesABoxSeenThroughAGap) {
   forEachGap([](std::span<const OraclePolygon> walls, const Box& box, const std::string& what) {
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       EXPECT_NE(ask(variant, kLookingBack, walls, box), Visibility::kHidden) << what;
     }
   });
@@ -98,7 +98,7 @@ TEST(OcclusionTree, NeverHidesABoxSeenThroughAGap) {
 TEST(OcclusionTree, TouchingSilhouettesOfUnconnectedWallsCountAsAGap) {
   // The right wall is farther away and begins exactly where the left one ends, as seen from the eye.
   const std::vector<OraclePolygon> walls{wall(-4, 1, -4, 4, -4), wall(2, 12, -8, 8, -8)};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_NE(ask(variant, kLookingBack, walls, {{1, -1, -14}, {5, 1, -12}}), Visibility::kHidden);
   }
 }
@@ -117,7 +117,7 @@ TEST(OcclusionTree, TheTipOfAGapThatEndsOnASharedEdgeIsSeen) {
       const Box box{{-0.1f, -0.5f, -3}, {0.1f, top, -2}};
       ASSERT_EQ(test::castAtAll(polygons, kLookingBack, {0, dent > 0.0 ? 1.5 * top : 0.5 * top, -2}),
                 test::RayAnswer::kClear);
-      for (const auto variant : kVariants) {
+      for (const auto variant : kTreeVariants) {
         EXPECT_NE(ask(variant, kLookingBack, polygons, box), Visibility::kHidden) << dent << " " << part;
       }
     }
@@ -139,7 +139,7 @@ TEST(OcclusionTree, AnOpenEdgeInLineWithAWatertightEdgeKeepsItsMargin) {
     const Vec3d target = view.eye + through * 1.2;
     ASSERT_EQ(test::castAtAll(polygons, view, target), test::RayAnswer::kClear);
     const Box box{Vec3f(target), Vec3f(target)};
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       EXPECT_NE(ask(variant, view, polygons, box), Visibility::kHidden) << height;
     }
   }
@@ -149,7 +149,7 @@ TEST(OcclusionTree, ABoxThatTouchesTheFrustumFromOutsideIsInIt) {
   View orthographic = kLookingBack;
   orthographic.orthographic = true;
   orthographic.ortho_height = 2;
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_NE(ask(variant, kLookingBack, {}, {{2, -0.5f, -2}, {3, 0.5f, -1}}), Visibility::kHidden);
     EXPECT_NE(ask(variant, orthographic, {}, {{1, -0.5f, -3}, {2, 0.5f, -2}}), Visibility::kHidden);
     EXPECT_EQ(ask(variant, orthographic, {}, {{1.001f, -0.5f, -3}, {2, 0.5f, -2}}), Visibility::kHidden);
@@ -158,7 +158,7 @@ TEST(OcclusionTree, ABoxThatTouchesTheFrustumFromOutsideIsInIt) {
 
 TEST(OcclusionTree, FromAnEyeThatIsNotFiniteNothingIsHidden) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, viewFrom({nan, 0, 0}, {0, 0, -1}), {{wall(-9, 9, -9, 9, -5)}},
                   {{-1, -1, -12}, {1, 1, -10}}),
               Visibility::kVisible);
@@ -170,7 +170,7 @@ TEST(OcclusionTree, SingleSidedWallsHideNothingFromBehind) {
   std::reverse(turned.vertices.begin(), turned.vertices.end());
   OraclePolygon both = turned;
   both.double_sided = true;
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     const Box behind{{-1, -1, -12}, {1, 1, -10}};
     EXPECT_EQ(ask(variant, kLookingBack, {{turned}}, behind), Visibility::kVisible);
     EXPECT_EQ(ask(variant, kLookingBack, {{both}}, behind), Visibility::kHidden);
@@ -180,7 +180,7 @@ TEST(OcclusionTree, SingleSidedWallsHideNothingFromBehind) {
 TEST(OcclusionTree, WhatTheNearPlaneClipsHidesNothing) {
   View view = kLookingBack;
   view.near = 5.5;
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_NE(ask(variant, view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}),
               Visibility::kHidden);
   }
@@ -190,7 +190,7 @@ TEST(OcclusionTree, WhatTheNearPlaneClipsHidesNothing) {
   for (int i = 0; i < 2000; ++i) {
     const double x = -6.0 + 0.006 * i;
     const Box box{Vec3f(Vec3d(x, -0.2, -12)), Vec3f(Vec3d(x + 0.5, 0.2, -11))};
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       if (ask(variant, view, {{side}}, box) == Visibility::kHidden) {
         EXPECT_FALSE(test::lookAt(box, view, {{side}}, 200, random).seen) << "x " << x;
       }
@@ -200,7 +200,7 @@ TEST(OcclusionTree, WhatTheNearPlaneClipsHidesNothing) {
 
 TEST(OcclusionTree, TheEyeInAnOccludersPlaneOrInsideTheBoxHidesNothing) {
   const OraclePolygon edge_on{{{-4, 0, -2}, {4, 0, -2}, {4, 0, -9}, {-4, 0, -9}}, true};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, {{edge_on}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
     EXPECT_EQ(ask(variant, kLookingBack, {{wall(-1, 1, -1, 1, -5)}}, {{-3, -3, -3}, {3, 3, 3}}),
               Visibility::kPartial);
@@ -209,7 +209,7 @@ TEST(OcclusionTree, TheEyeInAnOccludersPlaneOrInsideTheBoxHidesNothing) {
 
 TEST(OcclusionTree, BoxesThatAreNotWellFormedAreVisible) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     for (const Box& box : {Box{}, Box{{nan, 0, 0}, {1, 1, 1}}, Box{{-1, -1, -inf}, {1, 1, -10}}}) {
       EXPECT_EQ(ask(variant, kLookingBack, {{wall(-9, 9, -9, 9, -5)}}, box), Visibility::kVisible);
     }
@@ -217,7 +217,7 @@ TEST(OcclusionTree, BoxesThatAreNotWellFormedAreVisible) {
 }
 
 TEST(OcclusionTree, FlatAndPointLikeBoxesAreAnsweredToo) {
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -10}, {1, 1, -10}}), Visibility::kHidden);
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{0, 0, -10}, {0, 0, -10}}), Visibility::kHidden);
@@ -236,7 +236,7 @@ TEST(OcclusionTree, ABoxInFrontThatCrossesTheSupportingPlaneBesideTheOccluderIsN
     const Vec3d h(0.2, 0.2, 0.4);
     const Box box{Vec3f(c - h), Vec3f(c + h)};
     const test::Sight sight = test::lookAt(box, kLookingBack, {{slanted}}, 60, random);
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       if (sight.seen) {
         EXPECT_NE(ask(variant, kLookingBack, {{slanted}}, box), Visibility::kHidden) << c.x << " " << c.z;
       }
@@ -261,7 +261,7 @@ TEST(OcclusionTree, ABoxThatCrossesAnOccludersPlaneBesideItIsHiddenOnlyByTheExac
 TEST(OcclusionTree, PlanesOfTheFrustumThatABoxIsInsideOfAreNotAsked) {
   const OccluderSet nothing, one = setOf({{wall(-1, 1, -1, 1, -5)}});
   const Box ahead{{-1, -1, -12}, {1, 1, -10}}, across{{-12, -1, -12}, {1, 1, -10}};
-  for (const auto variant : kVariants) {
+  for (const auto variant : kTreeVariants) {
     OcclusionTree tree({.variant = variant});
     tree.build(kLookingBack, nothing, {});
     EXPECT_EQ(tree.classify(ahead, 0), Visibility::kVisible);
@@ -306,7 +306,7 @@ TEST(OcclusionTree, NeverHidesWhatShowsAmongSilhouettesThatCoincide) {
     view.ortho_height = 10;
     const OccluderSet set = setOf(panels);
     std::vector<OcclusionTree> trees;
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       trees.emplace_back(OcclusionTreeSettings{.variant = variant});
       trees.back().build(view, set, all(set));
     }
@@ -343,7 +343,7 @@ TEST_P(OcclusionTreeFamilies, NothingThatARayReachesIsHidden) {
     RandomScene scene(family, seed);
     const OccluderSet set = setOf(scene.polygons);
     std::vector<OcclusionTree> trees;
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       trees.emplace_back(OcclusionTreeSettings{.variant = variant});
       trees.back().build(scene.view, set, all(set));
     }

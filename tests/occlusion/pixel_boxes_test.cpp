@@ -15,7 +15,7 @@ namespace {
 
 using test::randomBox, test::randomView, test::ViewRandom;
 
-constexpr std::uint32_t kWidth = 320, kHeight = 180;
+constexpr std::uint32_t kPixelsWide = 320, kPixelsHigh = 180;
 
 using Wide = long double;
 
@@ -73,7 +73,7 @@ std::uint32_t pixelOf(Wide at, std::uint32_t size) {
 
 PixelBox projectOne(const PixelView& view, const Box& box) {
   PixelBox image;
-  projectBoxes(view, kWidth, kHeight, {&box, 1}, {&image, 1});
+  projectBoxes(view, kPixelsWide, kPixelsHigh, {&box, 1}, {&image, 1});
   return image;
 }
 
@@ -82,7 +82,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
   for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const PixelView view(eye_view, kWidth, kHeight);
+    const PixelView view(eye_view, kPixelsWide, kPixelsHigh);
     const Box box = randomBox(random, eye_view);
     const PixelBox image = projectOne(view, box);
     const Exact exact(view, box);
@@ -116,16 +116,16 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     const Wide right = slack(exact.x1, view.scale_x, view.middle_x);
     const Wide bottom = slack(exact.y0, view.scale_y, view.middle_y);
     const Wide top = slack(exact.y1, view.scale_y, view.middle_y);
-    EXPECT_LE(image.x0, pixelOf(exact.x0, kWidth)) << "seed " << seed;
-    EXPECT_GE(image.x1, pixelOf(exact.x1, kWidth)) << "seed " << seed;
-    EXPECT_LE(image.y0, pixelOf(exact.y0, kHeight)) << "seed " << seed;
-    EXPECT_GE(image.y1, pixelOf(exact.y1, kHeight)) << "seed " << seed;
-    EXPECT_GE(image.x0, pixelOf(exact.x0 - left, kWidth)) << "seed " << seed;
-    EXPECT_LE(image.x1, pixelOf(exact.x1 + right, kWidth)) << "seed " << seed;
-    EXPECT_GE(image.y0, pixelOf(exact.y0 - bottom, kHeight)) << "seed " << seed;
-    EXPECT_LE(image.y1, pixelOf(exact.y1 + top, kHeight)) << "seed " << seed;
-    EXPECT_FALSE(exact.x1 + right < 0 || exact.x0 - left > kWidth || exact.y1 + top < 0 ||
-                 exact.y0 - bottom > kHeight || exact.z0 > view.far * (1 + 0x1p-20L) + rounding)
+    EXPECT_LE(image.x0, pixelOf(exact.x0, kPixelsWide)) << "seed " << seed;
+    EXPECT_GE(image.x1, pixelOf(exact.x1, kPixelsWide)) << "seed " << seed;
+    EXPECT_LE(image.y0, pixelOf(exact.y0, kPixelsHigh)) << "seed " << seed;
+    EXPECT_GE(image.y1, pixelOf(exact.y1, kPixelsHigh)) << "seed " << seed;
+    EXPECT_GE(image.x0, pixelOf(exact.x0 - left, kPixelsWide)) << "seed " << seed;
+    EXPECT_LE(image.x1, pixelOf(exact.x1 + right, kPixelsWide)) << "seed " << seed;
+    EXPECT_GE(image.y0, pixelOf(exact.y0 - bottom, kPixelsHigh)) << "seed " << seed;
+    EXPECT_LE(image.y1, pixelOf(exact.y1 + top, kPixelsHigh)) << "seed " << seed;
+    EXPECT_FALSE(exact.x1 + right < 0 || exact.x0 - left > kPixelsWide || exact.y1 + top < 0 ||
+                 exact.y0 - bottom > kPixelsHigh || exact.z0 > view.far * (1 + 0x1p-20L) + rounding)
         << "seed " << seed << ": surely outside";
 
     const Wide nearest = view.orthographic ? -exact.z0 : 1 / exact.z0;
@@ -138,10 +138,10 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     EXPECT_LE(image.farthest, farthest) << "seed " << seed;
     EXPECT_GE(image.farthest, farthest - reciprocal_depth_slack(exact.z1)) << "seed " << seed;
 
-    const bool inside =
-        exact.x0 >= 0 && exact.x1 <= kWidth && exact.y0 >= 0 && exact.y1 <= kHeight && exact.z1 <= view.far;
-    const bool well_inside = exact.x0 > left && exact.x1 + right < kWidth && exact.y0 > bottom &&
-                             exact.y1 + top < kHeight && exact.z1 * (1 + 0x1p-20L) + rounding < view.far;
+    const bool inside = exact.x0 >= 0 && exact.x1 <= kPixelsWide && exact.y0 >= 0 &&
+                        exact.y1 <= kPixelsHigh && exact.z1 <= view.far;
+    const bool well_inside = exact.x0 > left && exact.x1 + right < kPixelsWide && exact.y0 > bottom &&
+                             exact.y1 + top < kPixelsHigh && exact.z1 * (1 + 0x1p-20L) + rounding < view.far;
     EXPECT_TRUE(!image.whole || inside) << "seed " << seed;
     EXPECT_TRUE(image.whole || !well_inside) << "seed " << seed;
     whole += image.whole ? 1 : 0;
@@ -155,7 +155,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
 TEST(PixelBoxes, ABoxBesideTheEyeIsOutsideThoughItCrossesTheNearPlane) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  const PixelView pixels(view, kWidth, kHeight);
+  const PixelView pixels(view, kPixelsWide, kPixelsHigh);
   EXPECT_EQ(projectOne(pixels, {{5, -1, -2}, {6, 1, 2}}).place, BoxPlace::kOutside);
   EXPECT_EQ(projectOne(pixels, {{-1, -30, -2}, {1, -20, 2}}).place, BoxPlace::kOutside);
   EXPECT_EQ(projectOne(pixels, {{-1, -1, 1}, {1, 1, 2}}).place, BoxPlace::kOutside) << "behind the eye";
@@ -170,7 +170,7 @@ TEST(PixelBoxes, ABoxWhoseEdgesLieOnPixelBordersHasThePixelsOnBothSides) {
   view.orthographic = true;
   view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
   view.aspect = 320.0 / 180.0;
-  const PixelView pixels(view, kWidth, kHeight);
+  const PixelView pixels(view, kPixelsWide, kPixelsHigh);
   const PixelBox image = projectOne(pixels, {{-10, -20, -6}, {30, 5, -5}});
   ASSERT_EQ(image.place, BoxPlace::kOnBuffer);
   EXPECT_TRUE(image.whole);
@@ -194,7 +194,7 @@ TEST(PixelBoxes, BoxesThatAreNotWellFormedAndViewsThatSayNothingGiveNoRectangle)
   for (const bool orthographic : {false, true}) {
     view.orthographic = orthographic;
     for (const Box& box : bad) {
-      EXPECT_EQ(projectOne(PixelView(view, kWidth, kHeight), box), PixelBox{});
+      EXPECT_EQ(projectOne(PixelView(view, kPixelsWide, kPixelsHigh), box), PixelBox{});
     }
   }
   const Box good{{-1, -1, -5}, {1, 1, -4}};
@@ -204,13 +204,13 @@ TEST(PixelBoxes, BoxesThatAreNotWellFormedAndViewsThatSayNothingGiveNoRectangle)
       View strange;
       setOrientation(strange, {0, 0, -1}, {0, 1, 0});
       strange.*member = value;
-      EXPECT_EQ(projectOne(PixelView(strange, kWidth, kHeight), good), PixelBox{});
+      EXPECT_EQ(projectOne(PixelView(strange, kPixelsWide, kPixelsHigh), good), PixelBox{});
     }
   }
   View nowhere;
   setOrientation(nowhere, {0, 0, -1}, {0, 1, 0});
   nowhere.eye.y = nan;
-  EXPECT_EQ(projectOne(PixelView(nowhere, kWidth, kHeight), good), PixelBox{});
+  EXPECT_EQ(projectOne(PixelView(nowhere, kPixelsWide, kPixelsHigh), good), PixelBox{});
 }
 
 TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
@@ -219,7 +219,7 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const BoxProjection projection(PixelView(eye_view, kWidth, kHeight), kWidth, kHeight);
+    const BoxProjection projection(PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
     std::vector<Box> boxes;
     for (std::uint64_t i = 0; i < 1 + seed % 70; ++i) {
       boxes.push_back(randomBox(random, eye_view));
@@ -259,10 +259,10 @@ TEST(PixelPoints, LieInTheirPixelsAndAreNoFartherThanTheySay) {
   for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const PixelView view(eye_view, kWidth, kHeight);
+    const PixelView view(eye_view, kPixelsWide, kPixelsHigh);
     const Vec3f point = randomPoint(random, randomBox(random, eye_view));
     PointImage image;
-    projectPoints(BoxProjection(view, kWidth, kHeight), {&point, 1}, {&image, 1});
+    projectPoints(BoxProjection(view, kPixelsWide, kPixelsHigh), {&point, 1}, {&image, 1});
     const Box box{point, point};
     const Exact exact(view, box);
     const PixelBox as_box = projectOne(view, box);
@@ -293,7 +293,7 @@ TEST(PixelPoints, OnPixelBordersOrOutsideTheViewAreUnknown) {
   view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
   view.aspect = 320.0 / 180.0;
   view.far = 100.0;
-  const BoxProjection projection(PixelView(view, kWidth, kHeight), kWidth, kHeight);
+  const BoxProjection projection(PixelView(view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
   const auto imageOf = [&](const Vec3f& point) {
     PointImage image;
     projectPoints(projection, {&point, 1}, {&image, 1});
@@ -319,7 +319,7 @@ TEST(PixelPoints, EveryInstructionSetAndEverySplitGiveTheSameBits) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const BoxProjection projection(PixelView(eye_view, kWidth, kHeight), kWidth, kHeight);
+    const BoxProjection projection(PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
     std::vector<Vec3f> points;
     for (std::uint64_t i = 0; i < 1 + seed % 70; ++i) {
       points.push_back(randomPoint(random, randomBox(random, eye_view)));

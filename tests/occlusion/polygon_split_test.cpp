@@ -48,11 +48,11 @@ std::vector<Corner> copyOf(const PolygonStack& stack, Piece piece) {
 }
 
 // A unit square in z = 0 around the origin, counter-clockwise seen from +z.
-const std::vector<Vec3d> kSquare{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+const std::vector<Vec3d> kSplitSquare{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
 
 TEST(PolygonSplit, SaysOnWhichSideAPolygonLies) {
   PolygonStack stack;
-  const Piece square = push(stack, kSquare);
+  const Piece square = push(stack, kSplitSquare);
   EXPECT_EQ(stack.split(square, {{1, 0, 0}, 2.0}, {}, 0.0).side, Side::kFront);
   EXPECT_EQ(stack.split(square, {{1, 0, 0}, -2.0}, {}, 0.0).side, Side::kBack);
   EXPECT_EQ(stack.split(square, {{0, 0, 1}, 0.0}, {}, 0.0).side, Side::kOnPlane);
@@ -65,7 +65,7 @@ TEST(PolygonSplit, SaysOnWhichSideAPolygonLies) {
 
 TEST(PolygonSplit, CutsThroughEdgesAndThroughCorners) {
   PolygonStack stack;
-  const Piece square = push(stack, kSquare);
+  const Piece square = push(stack, kSplitSquare);
   const SplitResult middle = stack.split(square, {{1, 0, 0}, -0.5}, {}, 0.0);
   ASSERT_EQ(middle.side, Side::kBoth);
   EXPECT_NEAR(length(doubleArea(stack.of(middle.front))), 2.0, 1e-12);
@@ -78,10 +78,10 @@ TEST(PolygonSplit, CutsThroughEdgesAndThroughCorners) {
 
 TEST(PolygonSplit, LeavesThePolygonItselfUnchanged) {
   PolygonStack stack;
-  const Piece square = push(stack, kSquare);
+  const Piece square = push(stack, kSplitSquare);
   stack.split(square, {{1, 0, 0}, -0.5}, {}, 0.0);
-  for (std::size_t i = 0; i < kSquare.size(); ++i) {
-    EXPECT_EQ(stack.of(square)[i].position, kSquare[i]);
+  for (std::size_t i = 0; i < kSplitSquare.size(); ++i) {
+    EXPECT_EQ(stack.of(square)[i].position, kSplitSquare[i]);
   }
 }
 
@@ -122,7 +122,7 @@ TEST(PolygonSplit, KeepsAreaAndOrientationAndPutsEachPartOnItsSide) {
 
 TEST(PolygonSplit, CornersWithinTheToleranceCountAsOnThePlane) {
   PolygonStack stack;
-  const Piece square = push(stack, kSquare);
+  const Piece square = push(stack, kSplitSquare);
   // The corners at x = 1 have a magnitude of 2.
   const double on_plane = kOnPlane * 2.0;
   EXPECT_EQ(stack.split(square, {{1, 0, 0}, -1.0 + 0.5 * on_plane}, {}, 0.0).side, Side::kBack);
@@ -137,7 +137,7 @@ TEST(PolygonSplit, NewEdgesAreNamedAndEmbedded) {
   std::vector<Plane> planes{{{1, 0, 0}, -0.5}};
   PolygonStack stack;
   stack.planes = &planes;
-  const Piece square = push(stack, kSquare);
+  const Piece square = push(stack, kSplitSquare);
   const PlaneRef ref = PlaneRef::make(0, false);
   const SplitResult result = stack.split(square, planes[0], ref, 0.0);
   ASSERT_EQ(result.side, Side::kBoth);
@@ -190,7 +190,7 @@ TEST(PolygonSplit, AnOldEdgeInThePlaneIsEmbeddedWhenItBoundsThePolygonTowardsThe
   for (const std::size_t by : {1u, 2u}) {
     PolygonStack stack;
     stack.planes = &planes;
-    const Piece square = push(stack, kSquare);
+    const Piece square = push(stack, kSplitSquare);
     stack.corners[1].edge = PlaneRef::make(0, false);
     const SplitResult result = stack.split(square, planes[by], PlaneRef::make(by, false), 0.0);
     EXPECT_EQ(result.side, by == 1 ? Side::kBack : Side::kFront);

@@ -18,16 +18,16 @@ namespace {
 using exact::Point;
 using exact::Polygon;
 
-struct Scene {
+struct LatticeScene {
   std::string kind;
   exact::Camera camera;
   std::vector<Polygon> polygons;
   bool mesh = false;  // triangles, from which findOccluders makes the set
 };
 
-class Random {
+class LatticeRandom {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  explicit LatticeRandom(std::uint64_t seed) : engine_(seed) {}
   std::int64_t in(std::int64_t low, std::int64_t high) {
     return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
   }
@@ -50,7 +50,7 @@ Point operator*(const Point& a, std::int64_t s) {
 }
 
 // Returns a polygon that mostly faces the camera.
-Polygon facing(const exact::Camera& camera, Random& random, std::vector<Point> vertices) {
+Polygon facing(const exact::Camera& camera, LatticeRandom& random, std::vector<Point> vertices) {
   Polygon polygon{std::move(vertices), random.once(3)};
   if (!exact::imageOf(camera, {polygon.vertices, false}) && !random.once(10)) {
     std::reverse(polygon.vertices.begin(), polygon.vertices.end());
@@ -59,7 +59,7 @@ Polygon facing(const exact::Camera& camera, Random& random, std::vector<Point> v
 }
 
 // A convex polygon on the lattice of two random vectors.
-std::vector<Point> latticePolygon(Random& random) {
+std::vector<Point> latticePolygon(LatticeRandom& random) {
   static const std::vector<std::vector<std::pair<int, int>>> kShapes = {
       {{0, 0}, {1, 0}, {0, 1}},
       {{0, 0}, {2, 0}, {2, 2}, {0, 2}},
@@ -77,7 +77,7 @@ std::vector<Point> latticePolygon(Random& random) {
   return vertices;
 }
 
-void addPolygons(Scene& scene, Random& random) {
+void addPolygons(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "polygons";
   for (std::int64_t i = random.in(1, 4); i > 0; --i) {
     scene.polygons.push_back(facing(scene.camera, random,
@@ -88,7 +88,7 @@ void addPolygons(Scene& scene, Random& random) {
 }
 
 // Two or three triangles with a common edge: about half of them fold over, and lie on one side of it.
-void addPair(Scene& scene, Random& random) {
+void addPair(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "pair";
   const Point p = random.point(), q = random.point();
   for (std::int64_t i = random.once(3) ? 3 : 2; i > 0; --i) {
@@ -97,7 +97,7 @@ void addPair(Scene& scene, Random& random) {
 }
 
 // Two triangles whose images share an edge that they do not share themselves: a gap.
-void addTouching(Scene& scene, Random& random) {
+void addTouching(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "touching";
   const Point p = random.point(), q = random.point(), behind{0, 0, random.in(1, 9)};
   const auto farther = [&](const Point& a) { return scene.camera.orthographic ? a + behind : a * 2; };
@@ -109,7 +109,7 @@ constexpr std::pair<int, int> kDirections[] = {{8, 0},  {6, 5},   {0, 8},  {-5, 
                                                {-8, 1}, {-6, -6}, {1, -8}, {5, -5}};
 
 // Triangles around a vertex, all around it or with some left out.
-void addFan(Scene& scene, Random& random) {
+void addFan(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "fan";
   const Point middle{random.in(-5, 5), random.in(-5, 5), random.in(8, 20)};
   std::vector<Point> ring;
@@ -126,7 +126,7 @@ void addFan(Scene& scene, Random& random) {
 }
 
 // A row of upright walls that overlap each other where the row turns back.
-void addStrip(Scene& scene, Random& random) {
+void addStrip(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "strip";
   Point at{-20, -10, random.in(8, 20)};
   for (int i = 0; i < 5; ++i) {
@@ -140,7 +140,7 @@ void addStrip(Scene& scene, Random& random) {
 }
 
 // A wall of triangles over a grid with random depths.
-void addGrid(Scene& scene, Random& random) {
+void addGrid(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "grid";
   const std::int64_t n = random.in(2, 4), step = random.in(4, 9), rough = random.in(0, 3);
   std::vector<Point> points;
@@ -159,7 +159,7 @@ void addGrid(Scene& scene, Random& random) {
 }
 
 // A wall with two or three other walls on its long upper edge, which lean towards or away from each other.
-void addTJunction(Scene& scene, Random& random) {
+void addTJunction(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "T-junction";
   scene.mesh = true;
   const std::int64_t parts = random.in(2, 3);
@@ -188,7 +188,7 @@ void addTJunction(Scene& scene, Random& random) {
 }
 
 // Polygons of any kind with corners on both sides of the near plane, on it, and behind the eye.
-void addNear(Scene& scene, Random& random) {
+void addNear(LatticeScene& scene, LatticeRandom& random) {
   scene.kind = "near plane";
   scene.camera.near = random.in(1, 4);
   const auto point = [&] { return Point{random.in(-12, 12), random.in(-12, 12), random.in(-8, 12)}; };
@@ -201,22 +201,22 @@ void addNear(Scene& scene, Random& random) {
              {floor, floor + Point{40, 0, 0}, floor + Point{40, 0, 30}, floor + Point{0, 0, 30}}));
 }
 
-Scene randomScene(std::uint64_t seed) {
-  Random random(seed);
-  Scene scene;
+LatticeScene randomScene(std::uint64_t seed) {
+  LatticeRandom random(seed);
+  LatticeScene scene;
   scene.camera.width = random.once(8) ? 1 : random.in(1, 16);
   scene.camera.height = random.once(8) ? 1 : random.in(1, 12);
   scene.camera.orthographic = random.once(3);
   const std::int64_t g = std::int64_t{1} << random.in(0, 1);
   scene.camera.gx = scene.camera.orthographic ? 16 * g : g;
   scene.camera.gy = scene.camera.orthographic ? 16 : 1;
-  constexpr void (*kKinds[])(Scene&, Random&) = {addPolygons, addPair, addTouching, addFan,
-                                                 addStrip,    addGrid, addNear,     addTJunction};
+  constexpr void (*kKinds[])(LatticeScene&, LatticeRandom&) = {
+      addPolygons, addPair, addTouching, addFan, addStrip, addGrid, addNear, addTJunction};
   kKinds[seed % std::size(kKinds)](scene, random);
   return scene;
 }
 
-std::string describe(const Scene& scene, std::uint64_t seed) {
+std::string describe(const LatticeScene& scene, std::uint64_t seed) {
   std::ostringstream text;
   const exact::Camera& c = scene.camera;
   text << "seed " << seed << ", " << scene.kind << (c.orthographic ? ", orthographic" : "") << ", " << c.width
@@ -233,7 +233,7 @@ std::string describe(const Scene& scene, std::uint64_t seed) {
 
 // An axis-aligned camera at a random place, with a scene in front of it.
 struct Placed {
-  Placed(const Scene& scene, std::uint64_t seed) {
+  Placed(const LatticeScene& scene, std::uint64_t seed) {
     constexpr int kForward[] = {-3, 1, -2};  // along -z, x, -y
     const int way = kForward[seed % 3];
     const Vec3d forward = way == -3 ? Vec3d(0, 0, -1) : way == 1 ? Vec3d(1, 0, 0) : Vec3d(0, -1, 0);
@@ -311,7 +311,7 @@ constexpr std::uint64_t kScenes = test::rounds(14000);
 TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanItIs) {
   int covered = 0, failures = 0, across = 0;
   for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
-    const Scene scene = randomScene(seed);
+    const LatticeScene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
     forEachPixel(placed.draw(scene.camera, nullptr), [&](std::int64_t x, std::int64_t y, float stored) {
@@ -374,7 +374,7 @@ bool isNear(float stored, double exact) {
 TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
   int within = 0, failures = 0;
   for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
-    const Scene scene = randomScene(seed);
+    const LatticeScene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
     forEachPixel(placed.draw(scene.camera, nullptr), [&](std::int64_t x, std::int64_t y, float stored) {
@@ -402,7 +402,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
 TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
   int within = 0, failures = 0;
   for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
-    const Scene scene = randomScene(seed);
+    const LatticeScene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
     const DepthBufferView buffer = placed.draw(scene.camera, nullptr);
@@ -433,7 +433,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
 TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthThere) {
   int covered = 0, failures = 0;
   for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
-    const Scene scene = randomScene(seed);
+    const LatticeScene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     const bool well_shaped = std::ranges::all_of(
         scene.polygons, [&](const Polygon& polygon) { return isWellShaped(scene.camera, polygon); });

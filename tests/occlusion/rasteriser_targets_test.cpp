@@ -112,8 +112,8 @@ std::vector<OraclePolygon> bumpyWall(Random& random, const Vec3d& origin, double
   return polygons;
 }
 
-constexpr std::pair<std::uint32_t, std::uint32_t> kSizes[] = {{1, 1},   {7, 5},    {17, 9},
-                                                              {33, 17}, {321, 64}, {128, 200}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kTargetSizes[] = {{1, 1},   {7, 5},    {17, 9},
+                                                                    {33, 17}, {321, 64}, {128, 200}};
 
 // Calls look(view, polygons, settings, what) for scenes of all families, with both kinds of coverage.
 template <typename Call>
@@ -126,7 +126,7 @@ void forEachScene(std::uint64_t seeds, Call&& call) {
         scene.polygons.insert(scene.polygons.end(), bumpy.begin(), bumpy.end());
         setOrientation(scene.view, scene.origin - scene.view.eye, {0, 1, 0});
       }
-      const auto& [width, height] = kSizes[seed % std::size(kSizes)];
+      const auto& [width, height] = kTargetSizes[seed % std::size(kTargetSizes)];
       for (const CoverageRule* coverage : kCoverageRules) {
         call(scene.view, scene.polygons, RasterSettings{width, height, coverage},
              std::string(family.name) + ", seed " + std::to_string(seed) +

@@ -14,7 +14,7 @@
 namespace sightline {
 namespace {
 
-const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
+const CoverageRule* const kBothRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
@@ -144,7 +144,7 @@ TEST(Rasteriser, CentresHideWhatIsSeenThroughANarrowGap) {
 }
 
 TEST(Rasteriser, StoresTheDepthOfAWallThatFacesTheEye) {
-  for (const CoverageRule* coverage : kCoverageRules) {
+  for (const CoverageRule* coverage : kBothRules) {
     for (const bool orthographic : {false, true}) {
       const Drawn drawn(turned(kLookingBack, 0.0, orthographic),
                         std::vector{wall(-20, 20, -20, 20, -5), wall(-40, 40, -40, 40, -9)},
@@ -195,7 +195,7 @@ TEST(Rasteriser, CountsWhatItCannotUse) {
   const OraclePolygon back{{{-3, -3, -5}, {-3, 3, -5}, {3, 3, -5}, {3, -3, -5}}, false};
   for (const OraclePolygon& polygon : {before_near, through_eye, edge_on, behind_eye, beside, back}) {
     for (const bool orthographic : {false, true}) {
-      for (const CoverageRule* coverage : kCoverageRules) {
+      for (const CoverageRule* coverage : kBothRules) {
         const Drawn drawn(turned(kLookingBack, 0.0, orthographic), std::vector{polygon}, {64, 36, coverage});
         ASSERT_EQ(drawn.set.occluders.size(), 1u);
         EXPECT_EQ(drawn.covered(), 0u);

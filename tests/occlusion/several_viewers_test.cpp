@@ -20,7 +20,7 @@ namespace {
 
 using test::ViewRandom;
 
-struct Triangle {
+struct SeenTriangle {
   Vec3f corners[3];
   bool double_sided = false;
 };
@@ -51,7 +51,7 @@ class RandomCase {
   std::uint32_t width() const { return width_; }
   std::uint32_t height() const { return height_; }
   // In a space of their own, see MovingSurfaces; in most cases that of the scene.
-  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<SeenTriangle>& triangles() const { return triangles_; }
   bool moved() const { return moved_; }
   const Mat4& sceneFromSpace() const { return scene_from_space_; }
   Vec3d toSpace(const Vec3d& point) const {
@@ -71,7 +71,7 @@ class RandomCase {
       object.first_index = static_cast<std::uint32_t>(scene.indices.size());
       object.material = MaterialId(scene.materials.size());
       scene.materials.push_back({"", Opacity::kOpaque, both, {}});
-      for (const Triangle& triangle : triangles_) {
+      for (const SeenTriangle& triangle : triangles_) {
         if (triangle.double_sided == both) {
           for (const Vec3f& corner : triangle.corners) {
             scene.indices.push_back(static_cast<std::uint32_t>(scene.positions.size()));
@@ -342,14 +342,14 @@ class RandomCase {
   std::uint32_t double_sided_ = 0;
   bool moved_ = false;
   Mat4 scene_from_space_;
-  std::vector<Triangle> triangles_;
+  std::vector<SeenTriangle> triangles_;
 };
 
 // Whether a triangle blocks a segment, from a part of it on, which a viewer's near plane may clip. Segments
 // that pass an edge within 1e-9 of the triangle's size count as blocked: those through an edge of two
 // triangles pass by both of them where rounding decides so. What this test looks for is larger: an edge that
 // is swept too little, or a pixel that an edge meets.
-bool blocks(const Triangle& triangle, const Vec3d& from, const Vec3d& to, double clipped) {
+bool blocks(const SeenTriangle& triangle, const Vec3d& from, const Vec3d& to, double clipped) {
   constexpr double kRounding = 1e-9;
   const Vec3d a = Vec3d(triangle.corners[0]) - from, b = Vec3d(triangle.corners[1]) - from,
               c = Vec3d(triangle.corners[2]) - from, d = to - from;
@@ -373,8 +373,8 @@ bool blocks(const Triangle& triangle, const Vec3d& from, const Vec3d& to, double
 bool isBlocked(const RandomCase& made, const Vec3d& viewer, const Vec3d& point) {
   const Vec3d from = made.toSpace(viewer), to = made.toSpace(point);
   const double clipped = made.viewers().near_distance / length(point - viewer);
-  return std::ranges::any_of(made.triangles(),
-                             [&](const Triangle& triangle) { return blocks(triangle, from, to, clipped); });
+  return std::ranges::any_of(
+      made.triangles(), [&](const SeenTriangle& triangle) { return blocks(triangle, from, to, clipped); });
 }
 
 DepthBufferView draw(Rasteriser& rasteriser, const RandomCase& made, std::uint64_t seed,
@@ -418,7 +418,7 @@ Vec3d viewerOf(ViewRandom& random, const View& view, const ViewerRegion& viewers
          around * (kInside * viewers.radius * (random.below(3) == 0 ? random.in(0.0, 1.0) : 1.0));
 }
 
-struct Counts {
+struct ViewerCounts {
   // These are sums, over the cases, of the share of pixels that is covered. Cases in a space of their own are
   // counted apart.
   double share = 0.0, moved_share = 0.0;
@@ -426,7 +426,7 @@ struct Counts {
 };
 
 // Looks at some covered pixels of a case from some viewers.
-void judge(std::uint64_t seed, std::uint32_t pixels, std::uint32_t viewers, Counts& counts) {
+void judge(std::uint64_t seed, std::uint32_t pixels, std::uint32_t viewers, ViewerCounts& counts) {
   const RandomCase made(seed);
   Rasteriser rasteriser;
   SurfaceSet surfaces;
@@ -483,7 +483,7 @@ void judge(std::uint64_t seed, std::uint32_t pixels, std::uint32_t viewers, Coun
 
 TEST(SeveralViewers, WhatIsCoveredIsHiddenFromAllOfThem) {
   constexpr std::uint64_t kFirst = 0, kSeeds = 3000;
-  Counts counts;
+  ViewerCounts counts;
   for (std::uint64_t seed = kFirst; seed < kFirst + kSeeds && counts.failures < 5; ++seed) {
     judge(seed, 24, 12, counts);
   }

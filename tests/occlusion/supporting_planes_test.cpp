@@ -18,8 +18,8 @@ Visibility classify(Planes planes, const View& view, const OccluderSet& set, con
 
 // Classifies by SupportingPlanes and by KeptPlanes, which must agree on what is hidden. The search over all
 // vertices may lose planes to rounding, and then hides less.
-Visibility ask(const View& view, std::span<const OraclePolygon> polygons, const Box& box,
-               bool joint_occlusion = true) {
+Visibility askPlanes(const View& view, std::span<const OraclePolygon> polygons, const Box& box,
+                     bool joint_occlusion = true) {
   const OccluderSet set = setOf(polygons);
   const Visibility state = classify(SupportingPlanes({joint_occlusion}), view, set, box);
   const Visibility kept = classify(KeptPlanes({.joint_occlusion = joint_occlusion}), view, set, box);
@@ -36,21 +36,21 @@ Visibility ask(const View& view, std::span<const OraclePolygon> polygons, const 
 TEST(SupportingPlanes, TellHiddenPartialAndVisible) {
   const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5)};
   {
-    EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
-    EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -4}, {1, 1, -3}}), Visibility::kVisible);
-    EXPECT_EQ(ask(kLookingBack, walls, {{-9, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
-    EXPECT_EQ(ask(kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -4}, {1, 1, -3}}), Visibility::kVisible);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{-9, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
     // These boxes cross the wall's plane, next to the wall and through it.
-    EXPECT_EQ(ask(kLookingBack, walls, {{3, -1, -7}, {4, 1, -4}}), Visibility::kVisible);
-    EXPECT_EQ(ask(kLookingBack, walls, {{0, 0, -7}, {4, 1, -4}}), Visibility::kPartial);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{3, -1, -7}, {4, 1, -4}}), Visibility::kVisible);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{0, 0, -7}, {4, 1, -4}}), Visibility::kPartial);
   }
 }
 
 // Exact arithmetic on integer coordinates up to 1,000: six times the volume of a tetrahedron.
-using Point = std::array<std::int64_t, 3>;
+using WholePoint = std::array<std::int64_t, 3>;
 
-std::int64_t orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
-  Point u, v, w;
+std::int64_t orientation(const WholePoint& a, const WholePoint& b, const WholePoint& c, const WholePoint& d) {
+  WholePoint u, v, w;
   for (std::size_t i = 0; i < 3; ++i) {
     u[i] = b[i] - a[i];
     v[i] = c[i] - a[i];
@@ -60,7 +60,7 @@ std::int64_t orientation(const Point& a, const Point& b, const Point& c, const P
          (u[0] * v[1] - u[1] * v[0]) * w[2];
 }
 
-Vec3f toVec(const Point& p) {
+Vec3f toVec(const WholePoint& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
@@ -71,7 +71,7 @@ struct ExactHiding {
                         // triangle's size inside it, and the point is as far behind it
 };
 
-ExactHiding hides(const std::array<Point, 3>& triangle, const Point& eye, const Point& point) {
+ExactHiding hides(const std::array<WholePoint, 3>& triangle, const WholePoint& eye, const WholePoint& point) {
   // Doubles hold these integers exactly.
   const auto behind = -orientation(triangle[0], triangle[1], triangle[2], point);
   const auto before = orientation(triangle[0], triangle[1], triangle[2], eye);
@@ -103,16 +103,16 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
     const auto coordinate = [&] {
       return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(2 * range + 1)) - range;
     };
-    const auto point = [&] { return Point{coordinate(), coordinate(), coordinate()}; };
+    const auto point = [&] { return WholePoint{coordinate(), coordinate(), coordinate()}; };
     for (int round = 0; round < 20000; ++round) {
       // Most of the time a large triangle between the eye and a small box.
-      std::array<Point, 3> triangle{point(), point(), point()};
-      Point eye = point(), low = point(), high = point();
+      std::array<WholePoint, 3> triangle{point(), point(), point()};
+      WholePoint eye = point(), low = point(), high = point();
       if (round % 4 != 0) {
         eye[2] = 4 * range;
         low[2] -= 3 * range;
         high[2] -= 3 * range;
-        for (Point* corner : {&low, &high}) {
+        for (WholePoint* corner : {&low, &high}) {
           (*corner)[0] /= 2;
           (*corner)[1] /= 2;
         }
@@ -127,8 +127,8 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
       }
       bool all_hidden = true, all_clear = true, any_clear = false;
       for (unsigned corner = 0; corner < 8; ++corner) {
-        const Point x{corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
-                      corner & 4 ? high[2] : low[2]};
+        const WholePoint x{corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
+                           corner & 4 ? high[2] : low[2]};
         const ExactHiding answer = hides(triangle, eye, x);
         all_hidden &= answer.hidden;
         all_clear &= answer.clear;
@@ -138,7 +138,7 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
       view.near = 1e-6;
       // The near plane must not matter here.
       double depth = 1.0;
-      for (const Point& p : triangle) {
+      for (const WholePoint& p : triangle) {
         depth = std::min(depth, view.eye.z - static_cast<double>(p[2]));
       }
       if (depth < 0.5) {
@@ -146,7 +146,7 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
       }
       const std::vector<OraclePolygon> polygons{
           {{toVec(triangle[0]), toVec(triangle[1]), toVec(triangle[2])}, false}};
-      const Visibility state = ask(view, polygons, {toVec(low), toVec(high)});
+      const Visibility state = askPlanes(view, polygons, {toVec(low), toVec(high)});
       if (state == Visibility::kHidden) {
         EXPECT_TRUE(all_hidden) << range << " round " << round;
         ++hidden;
@@ -168,23 +168,23 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
 
 TEST(SupportingPlanes, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
   const std::vector<OraclePolygon> walls{wall(-4, 4, -4, 4, -5)};
-  EXPECT_NE(ask(kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5}}), Visibility::kHidden);
-  EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5.001f}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5.001f}}), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, ABoxWhoseShadowTouchesTheOutlineIsNotHidden) {
   // The box's edge at x = 2, z = -10 is exactly behind the wall's edge at x = 1, z = -5.
   const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5)};
-  EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -12}, {2, 1, -10}}), Visibility::kPartial);
-  EXPECT_EQ(ask(kLookingBack, walls, {{2, -1, -10}, {3, 1, -10}}), Visibility::kVisible);
-  EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -12}, {1.999f, 1, -10}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -12}, {2, 1, -10}}), Visibility::kPartial);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{2, -1, -10}, {3, 1, -10}}), Visibility::kVisible);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -12}, {1.999f, 1, -10}}), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, AdjoiningWallsHideABoxAcrossTheirSharedEdgeOnlyTogether) {
   const std::vector<OraclePolygon> walls{wall(-4, 0.3f, -4, 4, -5), wall(0.3f, 4, -4, 4, -5)};
   const Box box{{-1, -1, -12}, {1, 1, -10}};
-  EXPECT_EQ(ask(kLookingBack, walls, box), Visibility::kHidden);
-  EXPECT_EQ(ask(kLookingBack, walls, box, false), Visibility::kPartial);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, box), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, box, false), Visibility::kPartial);
 }
 
 TEST(SupportingPlanes, TheSidesOfACornerHideTogether) {
@@ -195,7 +195,8 @@ TEST(SupportingPlanes, TheSidesOfACornerHideTogether) {
         {{{-3, -2, -8}, {0, -2, z}, {0, 2, z}, {-3, 2, -8}}, true},
         {{{0, -2, z}, {3, -2, -8}, {3, 2, -8}, {0, 2, z}}, true},
     };
-    EXPECT_EQ(ask(kLookingBack, walls, {{-0.5f, -0.5f, -15}, {0.5f, 0.5f, -14}}), Visibility::kHidden) << z;
+    EXPECT_EQ(askPlanes(kLookingBack, walls, {{-0.5f, -0.5f, -15}, {0.5f, 0.5f, -14}}), Visibility::kHidden)
+        << z;
   }
 }
 
@@ -205,8 +206,8 @@ TEST(SupportingPlanes, ASharedEdgeThatIsASilhouetteHidesNothingBeyondIt) {
       {{{-3, -3, -5}, {0, -3, -5}, {0, 3, -5}, {-3, 3, -5}}, true},
       {{{0, -3, -5}, {-3, -3, -8}, {-3, 3, -8}, {0, 3, -5}}, true},
   };
-  EXPECT_NE(ask(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -11}}), Visibility::kHidden);
-  EXPECT_EQ(ask(kLookingBack, walls, {{-2, -1, -12}, {-1, 1, -11}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -11}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-2, -1, -12}, {-1, 1, -11}}), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, TJunctionsAreClosed) {
@@ -216,11 +217,11 @@ TEST(SupportingPlanes, TJunctionsAreClosed) {
       wall(-4, -1, 0, 4, -5),
       wall(-1, 1.5f, 0, 4, -5),
       wall(1.5f, 4, 0, 4, -5)};
-  EXPECT_EQ(ask(kLookingBack, walls, {{-3, -1, -12}, {5, 1, -10}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-3, -1, -12}, {5, 1, -10}}), Visibility::kHidden);
   // Without the middle one there is a gap above the lower wall.
   const std::vector<OraclePolygon> gap{walls[0], walls[1], walls[3]};
-  EXPECT_EQ(ask(kLookingBack, gap, {{-3, -1, -12}, {5, 1, -10}}), Visibility::kPartial);
-  EXPECT_EQ(ask(kLookingBack, gap, {{-3, -2, -12}, {5, -1, -10}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, gap, {{-3, -1, -12}, {5, 1, -10}}), Visibility::kPartial);
+  EXPECT_EQ(askPlanes(kLookingBack, gap, {{-3, -2, -12}, {5, -1, -10}}), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, AHoleIsNeverClosed) {
@@ -233,34 +234,35 @@ TEST(SupportingPlanes, AHoleIsNeverClosed) {
     const std::size_t j = (i + 1) % 4;
     ring.push_back({{outer[i], outer[j], inner[j], inner[i]}, false});
   }
-  EXPECT_NE(ask(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
-  EXPECT_NE(ask(kLookingBack, ring, {{-0.1f, -0.1f, -12}, {0.1f, 0.1f, -10}}), Visibility::kHidden);
-  EXPECT_NE(ask(kLookingBack, ring, {{1.5f, 1.5f, -12}, {3, 3, -10}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(kLookingBack, ring, {{-0.1f, -0.1f, -12}, {0.1f, 0.1f, -10}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(kLookingBack, ring, {{1.5f, 1.5f, -12}, {3, 3, -10}}), Visibility::kHidden);
   // A box behind the edge that two of them share is hidden by the two together.
-  EXPECT_EQ(ask(kLookingBack, ring, {{4, 4, -12}, {5, 5, -10}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, ring, {{4, 4, -12}, {5, 5, -10}}), Visibility::kHidden);
   // With the hole filled, everything behind the walls is hidden.
   ring.push_back({{inner[0], inner[1], inner[2], inner[3]}, false});
-  EXPECT_EQ(ask(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, AnLShapeHidesWhatLiesBehindItsKernel) {
   // Three squares; the notch is at the upper right.
   const std::vector<OraclePolygon> shape{wall(-3, 0, -3, 0, -5), wall(0, 3, -3, 0, -5),
                                          wall(-3, 0, 0, 3, -5)};
-  EXPECT_EQ(ask(kLookingBack, shape, {{-1, -2, -12}, {1, -1, -10}}), Visibility::kHidden);  // lower arm
-  EXPECT_EQ(ask(kLookingBack, shape, {{-2, -1, -12}, {-1, 1, -10}}), Visibility::kHidden);  // left arm
-  EXPECT_NE(ask(kLookingBack, shape, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);   // in the notch
-  EXPECT_NE(ask(kLookingBack, shape, {{1, 1, -12}, {2, 2, -10}}), Visibility::kHidden);     // beside it
+  EXPECT_EQ(askPlanes(kLookingBack, shape, {{-1, -2, -12}, {1, -1, -10}}), Visibility::kHidden);  // lower arm
+  EXPECT_EQ(askPlanes(kLookingBack, shape, {{-2, -1, -12}, {-1, 1, -10}}), Visibility::kHidden);  // left arm
+  EXPECT_NE(askPlanes(kLookingBack, shape, {{-1, -1, -12}, {1, 1, -10}}),
+            Visibility::kHidden);                                                              // in the notch
+  EXPECT_NE(askPlanes(kLookingBack, shape, {{1, 1, -12}, {2, 2, -10}}), Visibility::kHidden);  // beside it
 }
 
 TEST(SupportingPlanes, DisconnectedWallsDoNotFuse) {
   const std::vector<OraclePolygon> walls{wall(-2, 0.3f, -4, 4, -4), wall(0, 5, -8, 8, -6)};
-  EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
+  EXPECT_EQ(askPlanes(kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
 }
 
 TEST(SupportingPlanes, NeverHideABoxSeenThroughAGap) {
   forEachGap([](std::span<const OraclePolygon> walls, const Box& box, const std::string& what) {
-    EXPECT_NE(ask(kLookingBack, walls, box), Visibility::kHidden) << what;
+    EXPECT_NE(askPlanes(kLookingBack, walls, box), Visibility::kHidden) << what;
   });
 }
 
@@ -270,14 +272,14 @@ TEST(SupportingPlanes, SingleSidedWallsHideNothingFromBehind) {
   OraclePolygon both = turned;
   both.double_sided = true;
   const Box behind{{-1, -1, -12}, {1, 1, -10}};
-  EXPECT_EQ(ask(kLookingBack, {{turned}}, behind), Visibility::kVisible);
-  EXPECT_EQ(ask(kLookingBack, {{both}}, behind), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, {{turned}}, behind), Visibility::kVisible);
+  EXPECT_EQ(askPlanes(kLookingBack, {{both}}, behind), Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, WhatTheNearPlaneClipsHidesNothing) {
   View view = kLookingBack;
   view.near = 5.5;
-  EXPECT_NE(ask(view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
+  EXPECT_NE(askPlanes(view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
   // A wall that crosses the near plane hides with the part beyond it only.
   const OraclePolygon side{{{-1, -4, 0}, {3, -4, -8}, {3, 4, -8}, {-1, 4, 0}}, true};
   std::mt19937_64 random(3);
@@ -285,7 +287,7 @@ TEST(SupportingPlanes, WhatTheNearPlaneClipsHidesNothing) {
   for (int i = 0; i < 2000; ++i) {
     const double x = -6.0 + 0.006 * i;
     const Box box{Vec3f(Vec3d(x, -0.2, -12)), Vec3f(Vec3d(x + 0.05, 0.2, -11.5))};
-    if (ask(view, {{side}}, box) == Visibility::kHidden) {
+    if (askPlanes(view, {{side}}, box) == Visibility::kHidden) {
       ++hidden;
       EXPECT_FALSE(lookAt(box, view, {{side}}, 200, random).seen) << "x " << x;
     }
@@ -295,17 +297,18 @@ TEST(SupportingPlanes, WhatTheNearPlaneClipsHidesNothing) {
 
 TEST(SupportingPlanes, TheEyeInAnOccludersPlaneOrInsideTheBoxHidesNothing) {
   const OraclePolygon edge_on{{{-4, 0, -2}, {4, 0, -2}, {4, 0, -9}, {-4, 0, -9}}, true};
-  EXPECT_EQ(ask(kLookingBack, {{edge_on}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
-  EXPECT_NE(ask(kLookingBack, {{wall(-1, 1, -1, 1, -5)}}, {{-3, -3, -3}, {3, 3, 3}}), Visibility::kHidden);
+  EXPECT_EQ(askPlanes(kLookingBack, {{edge_on}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
+  EXPECT_NE(askPlanes(kLookingBack, {{wall(-1, 1, -1, 1, -5)}}, {{-3, -3, -3}, {3, 3, 3}}),
+            Visibility::kHidden);
 }
 
 TEST(SupportingPlanes, BoxesAndEyesThatAreNotFiniteSeeEverything) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const std::vector<OraclePolygon> walls{wall(-9, 9, -9, 9, -5)};
   for (const Box& box : {Box{}, Box{{nan, 0, 0}, {1, 1, 1}}, Box{{-1, -1, -inf}, {1, 1, -10}}}) {
-    EXPECT_EQ(ask(kLookingBack, walls, box), Visibility::kVisible);
+    EXPECT_EQ(askPlanes(kLookingBack, walls, box), Visibility::kVisible);
   }
-  EXPECT_EQ(ask(viewFrom({nan, 0, 0}, {0, 0, -1}), walls, {{-1, -1, -12}, {1, 1, -10}}),
+  EXPECT_EQ(askPlanes(viewFrom({nan, 0, 0}, {0, 0, -1}), walls, {{-1, -1, -12}, {1, 1, -10}}),
             Visibility::kVisible);
 }
 
@@ -361,10 +364,10 @@ TEST(SupportingPlanes, CompleteForConvexUnions) {
       const Vec3d c = Vec3d(0, 0, -12) + random.point(5.0);
       const Vec3d h = abs(random.point(2.0));
       const Box box{Vec3f(c - h), Vec3f(c + h)};
-      if (ask(view, whole, box) == Visibility::kHidden) {
+      if (askPlanes(view, whole, box) == Visibility::kHidden) {
         ++hidden;
-        EXPECT_EQ(ask(view, parts, box), Visibility::kHidden) << "seed " << seed << " box " << i;
-        joint_only += ask(view, parts, box, false) != Visibility::kHidden ? 1 : 0;
+        EXPECT_EQ(askPlanes(view, parts, box), Visibility::kHidden) << "seed " << seed << " box " << i;
+        joint_only += askPlanes(view, parts, box, false) != Visibility::kHidden ? 1 : 0;
       }
     }
   }
@@ -411,7 +414,7 @@ TEST(SupportingPlanes, AConvexBodysFacesHideWhatTheBodyHides) {
       }
       blocked &= through;
     }
-    const Visibility state = ask(view, cube, box);
+    const Visibility state = askPlanes(view, cube, box);
     const bool outside_cube =
         c.x - h.x > 1 || c.x + h.x < -1 || c.y - h.y > 1 || c.y + h.y < -1 || c.z - h.z > 1 || c.z + h.z < -1;
     if (blocked && outside_cube && state != Visibility::kHidden) {
@@ -427,7 +430,7 @@ TEST(SupportingPlanes, AConvexBodysFacesHideWhatTheBodyHides) {
     }
     if (state == Visibility::kHidden) {
       ++hidden;
-      joint_only += ask(view, cube, box, false) != Visibility::kHidden ? 1 : 0;
+      joint_only += askPlanes(view, cube, box, false) != Visibility::kHidden ? 1 : 0;
       EXPECT_FALSE(lookAt(box, view, cube, 100, random.engine()).seen) << i;
     }
   }

@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "tests/pvs/sight_checks.h"
+#include "tests/support/not_finite.h"
 
 namespace sightline::sight_test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 
 // A file in memory and the data that it was made from.
 struct Made {

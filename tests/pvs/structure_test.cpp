@@ -11,8 +11,8 @@
 namespace sightline::pvs {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 
 // A root with an inner node of two leaves, and a leaf: nodes 0, 1 (2, 3), 4.
 BoxTree smallTree() {
@@ -62,7 +62,8 @@ TEST(BoxTreeCheck, TakesSoundTrees) {
 
 TEST(BoxTreeCheck, TakesInfiniteBoxesBelowAnInfiniteRoot) {
   BoxTree tree = smallTree();
-  const Box infinite{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  const Box infinite{{-kFloatInfinity, -kFloatInfinity, -kFloatInfinity},
+                     {kFloatInfinity, kFloatInfinity, kFloatInfinity}};
   tree.nodes[0].bounds = tree.nodes[4].bounds = infinite;
   EXPECT_TRUE(checkBoxTree(tree.view()));
 }
@@ -93,8 +94,8 @@ TEST(BoxTreeCheck, RefusesEveryDamage) {
       {"box beyond its parent's", [](BoxTree& t) { t.nodes[2].bounds.max.y = 1.5f; }},
       {"empty box", [](BoxTree& t) { t.nodes[2].bounds = {}; }},
       {"empty root box", [](BoxTree& t) { t.nodes[0].bounds = {}; }},
-      {"box that is not a number", [](BoxTree& t) { t.nodes[2].bounds.min.z = kNan; }},
-      {"root box that is not a number", [](BoxTree& t) { t.nodes[0].bounds.max.x = kNan; }}};
+      {"box that is not a number", [](BoxTree& t) { t.nodes[2].bounds.min.z = kFloatNan; }},
+      {"root box that is not a number", [](BoxTree& t) { t.nodes[0].bounds.max.x = kFloatNan; }}};
   for (const auto& [what, apply] : damages) {
     BoxTree tree = smallTree();
     apply(tree);

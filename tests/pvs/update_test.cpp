@@ -28,7 +28,7 @@ struct Made {
 };
 
 // answers: of an earlier bake, or none.
-Made bakeWith(const Scene& scene, BakeSettings settings, const std::vector<std::byte>& answers) {
+Made madeWith(const Scene& scene, BakeSettings settings, const std::vector<std::byte>& answers) {
   settings.answers = true;
   Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
   Made made;
@@ -68,14 +68,14 @@ struct Totals {
 void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t seed, int edits,
                 Totals& totals) {
   RandomEdits random(seed);
-  Made before = bakeWith(scene.scene(), settings, {});
+  Made before = madeWith(scene.scene(), settings, {});
   EXPECT_EQ(before.file, plainFile(scene.scene(), settings)) << "seed " << seed;
   std::string what = "seed " + std::to_string(seed);
   for (int i = 0; i < edits; ++i) {
     const EditedScene earlier = scene;
     what += "; " + random.edit(scene);
     const Scene now = scene.scene();
-    Made made = bakeWith(now, settings, before.answers);
+    Made made = madeWith(now, settings, before.answers);
     ASSERT_TRUE(made.file == plainFile(now, settings)) << what;
     totals.edits += 1;
     if (made.taken.difference.empty()) {
@@ -87,7 +87,7 @@ void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t s
     if (i % 3 == 2) {
       scene = earlier;
       what += "; undone";
-      const Made undone = bakeWith(scene.scene(), settings, made.answers);
+      const Made undone = madeWith(scene.scene(), settings, made.answers);
       ASSERT_TRUE(undone.file == before.file) << what;
     } else {
       before = std::move(made);
@@ -126,12 +126,12 @@ TEST(Update, HasThePartsOfAFullBake) {
   const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
   EditedScene scene = roomScene(7);
   RandomEdits random(7);
-  Made before = bakeWith(scene.scene(), settings, {});
+  Made before = madeWith(scene.scene(), settings, {});
   std::uint64_t asked = 0, asked_in_full = 0;
   for (int i = 0; i < 4; ++i) {
     const std::string what = random.edit(scene);
-    Made update = bakeWith(scene.scene(), settings, before.answers);
-    const Made full = bakeWith(scene.scene(), settings, {});
+    Made update = madeWith(scene.scene(), settings, before.answers);
+    const Made full = madeWith(scene.scene(), settings, {});
     EXPECT_EQ(update.parts, full.parts) << what;
     EXPECT_GT(full.parts.size(), 1u);
     asked += update.stats.asked;
@@ -221,9 +221,9 @@ TEST(Update, AWallThatComesBeyondAllOthersHidesWhereNarrowingIsAllowed) {
                               .near_distance = 0.01,
                               .viewers = {Box{{0, 0, 0}, {2, 2, 2}}},
                               .narrowings = 1};
-  const Made before = bakeWith(scene.scene(), settings, {});
+  const Made before = madeWith(scene.scene(), settings, {});
   scene.pieces.push_back(blockPiece({30, -6, 0.6f}, {30.5f, 8, 0.93f}, 0));
-  const Made made = bakeWith(scene.scene(), settings, before.answers);
+  const Made made = madeWith(scene.scene(), settings, before.answers);
   EXPECT_EQ(made.taken.difference, "");
   EXPECT_EQ(made.taken.come, 1u);
   EXPECT_TRUE(made.file == plainFile(scene.scene(), settings));
@@ -249,7 +249,7 @@ TEST(Update, AsksNothingAgainWhereNothingChanged) {
     const BakeSettings settings{
         .occlusion = occlusion, .triangle_budget = 120, .max_depth = 2, .near_distance = 0.05};
     const Scene scene = roomScene(5, 2).scene();
-    const Made first = bakeWith(scene, settings, {}), again = bakeWith(scene, settings, first.answers);
+    const Made first = madeWith(scene, settings, {}), again = madeWith(scene, settings, first.answers);
     EXPECT_EQ(first.stats.asked, first.stats.questions);
     EXPECT_EQ(again.stats.questions, first.stats.questions);
     EXPECT_EQ(again.stats.asked, 0u);
@@ -265,9 +265,9 @@ TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
       EditedScene::of(test::sceneOf({test::block({1, 1.5f, 1}, {1.0625f, 1.5625f, 1.0625f})})).pieces[0];
   edited.pieces.push_back(crumb);
   const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
-  const Made before = bakeWith(edited.scene(), settings, {});
+  const Made before = madeWith(edited.scene(), settings, {});
   edited.pieces.back().move({0.5f, 0, 0.25f});
-  const Made after = bakeWith(edited.scene(), settings, before.answers);
+  const Made after = madeWith(edited.scene(), settings, before.answers);
   EXPECT_EQ(after.taken.come, 1u);
   EXPECT_EQ(after.taken.gone, 1u);
   EXPECT_LT(after.stats.asked * 20, after.stats.questions);
@@ -276,7 +276,7 @@ TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
 TEST(Update, RefusesBytesThatAreNoAnswers) {
   const Scene scene = roomScene(7, 2).scene();
   const BakeSettings settings{.triangle_budget = 120, .max_depth = 2, .answers = true};
-  const std::vector<std::byte> answers = bakeWith(scene, settings, {}).answers;
+  const std::vector<std::byte> answers = madeWith(scene, settings, {}).answers;
   Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
   ASSERT_TRUE(bake);
   for (std::size_t length = 0; length < answers.size(); length += 1 + answers.size() / 97) {

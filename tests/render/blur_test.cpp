@@ -18,7 +18,7 @@
 namespace sightline {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 
 LayerImage blank(std::uint32_t width, std::uint32_t height) {
   LayerImage image;
@@ -160,7 +160,7 @@ TEST(BlurEvenly, IsConvolutionWithADisc) {
 
 TEST(BlurEvenly, LeavesPicturesUpToOnePixelAsTheyAre) {
   LayerImage image = randomImage(3, 9, 5, 0);
-  at(image, 2, 2).red = kNan;
+  at(image, 2, 2).red = kFloatNan;
   for (const double diameter : {0.0, 1.0, -3.0, std::numeric_limits<double>::quiet_NaN()}) {
     LayerImage blurred;
     blurEvenly(image, diameter, blurred);
@@ -236,7 +236,7 @@ TEST(BlurEvenly, AnEvenPictureStaysEven) {
 
 TEST(BlurEvenly, PixelsThatAreNotFiniteAreTransparent) {
   LayerImage image = randomImage(5, 24, 18, 5), without = image;
-  at(image, 10, 9) = {kNan, 0.0f, 0.0f, 1.0f};
+  at(image, 10, 9) = {kFloatNan, 0.0f, 0.0f, 1.0f};
   at(image, 12, 9) = {0.0f, std::numeric_limits<float>::infinity(), 0.0f, 1.0f};
   at(without, 10, 9) = at(without, 12, 9) = {};
   LayerImage blurred, expected;
@@ -358,7 +358,7 @@ TEST(BlurAlong, KeepsColourOpacityAndTheirPlaceAwayFromBorders) {
 TEST(BlurAlong, TakesLinesOfNoUse) {
   const LayerImage image = randomImage(37, 16, 12, 2);
   LayerImage blurred;
-  for (const double d : {0.0, std::numeric_limits<double>::infinity(), static_cast<double>(kNan)}) {
+  for (const double d : {0.0, std::numeric_limits<double>::infinity(), static_cast<double>(kFloatNan)}) {
     blurAlong(image, d, 0.0, blurred);
     EXPECT_EQ(blurred.pixels, image.pixels);
   }

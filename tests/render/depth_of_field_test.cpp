@@ -1,19 +1,19 @@
 // Circles of confusion, the lens's points, and the equations for two layers of the paper's section 10.
 
 #include "sightline/render/depth_of_field.h"
+#include "tests/support/not_finite.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace sightline {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 
 View lookingAlong() {
   View view;

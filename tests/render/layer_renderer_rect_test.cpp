@@ -10,7 +10,7 @@
 namespace sightline::render {
 namespace {
 
-constexpr std::uint32_t kWidth = 200, kHeight = 100;
+constexpr std::uint32_t kRectWidth = 200, kRectHeight = 100;
 
 struct Case {
   View view;
@@ -57,7 +57,7 @@ Drawn project(const Case& c, const Vec3d& point) {
   const double half = c.view.orthographic ? 0.5 * c.view.ortho_height : c.view.tan_half_fovy;
   const double u = x / (half * c.view.aspect), v = y / half;
   const bool inside = std::abs(u) <= 1.0 && std::abs(v) <= 1.0 && z >= c.view.near && z <= c.view.far;
-  return {(u + 1.0) * 0.5 * kWidth, (v + 1.0) * 0.5 * kHeight, inside};
+  return {(u + 1.0) * 0.5 * kRectWidth, (v + 1.0) * 0.5 * kRectHeight, inside};
 }
 
 TEST(LayerRendererRect, HoldsAllPointsOfItsBoxesThatAreSeen) {
@@ -67,10 +67,10 @@ TEST(LayerRendererRect, HoldsAllPointsOfItsBoxesThatAreSeen) {
   int seen = 0, partial = 0;
   for (int i = 0; i < 300; ++i) {
     const Case c = randomCase(random);
-    RectCollector collector(c.view, c.lens, kWidth, kHeight);
+    RectCollector collector(c.view, c.lens, kRectWidth, kRectHeight);
     collector.add(c.box, c.scene_from_box);
     const PixelRect& rect = collector.rect();
-    partial += rect.width() * rect.height() < kWidth * kHeight / 2 ? 1 : 0;
+    partial += rect.width() * rect.height() < kRectWidth * kRectHeight / 2 ? 1 : 0;
     for (int k = 0; k < 100; ++k) {
       const Vec3d min(c.box.min), size = Vec3d(c.box.max) - min;
       const Vec3d at(min.x + size.x * share(random), min.y + size.y * share(random),
@@ -96,7 +96,7 @@ View plainView() {
 }
 
 TEST(LayerRendererRect, IsHardlyLargerThanTheBoxes) {
-  RectCollector collector(plainView(), {}, kWidth, kHeight);
+  RectCollector collector(plainView(), {}, kRectWidth, kRectHeight);
   EXPECT_EQ(collector.rect(), PixelRect{});
   // At a depth of 10 the picture is 20 by 10 metres, ten pixels a metre.
   collector.add({{-2.0f, 1.0f, -10.0f}, {-1.0f, 2.0f, -10.0f}}, {});
@@ -117,7 +117,7 @@ TEST(LayerRendererRect, IsThePictureWhereABoxIsAroundTheEyeOrNotFinite) {
   for (const auto& [box, place] : {std::pair<Box, Mat4>{{{-1, -1, -1}, {1, 1, 1}}, {}},
                                    {{{0, 0, -9}, {infinity, 1, -8}}, {}},
                                    {{{0, 0, -9}, {1, 1, -8}}, nowhere}}) {
-    RectCollector collector(plainView(), {}, kWidth, kHeight);
+    RectCollector collector(plainView(), {}, kRectWidth, kRectHeight);
     collector.add(box, place);
     EXPECT_TRUE(collector.full());
   }

@@ -10,14 +10,15 @@
 
 #include "tests/render/largest_difference.h"
 #include "tests/render/test_scene.h"
+#include "tests/support/not_finite.h"
 
 namespace sightline {
 namespace {
 
-constexpr std::uint32_t kWidth = 96, kHeight = 72;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint32_t kReuseWidth = 96, kReuseHeight = 72;
+using test::kNan;
 // The size of a pixel in metres, ten metres from the eye, where the picture is ten metres high.
-constexpr double kPixel = 10.0 / kHeight;
+constexpr double kPixel = 10.0 / kReuseHeight;
 
 Mat4 shifted(double x, double y, double z) {
   Mat4 m;
@@ -73,8 +74,8 @@ class Reused {
 
  private:
   static std::unique_ptr<LayerRenderer> rendererOf(const Scene& scene, std::uint32_t guard) {
-    Result<LayerRenderer> renderer =
-        LayerRenderer::create(scene.view(), {.width = kWidth + 2 * guard, .height = kHeight + 2 * guard});
+    Result<LayerRenderer> renderer = LayerRenderer::create(
+        scene.view(), {.width = kReuseWidth + 2 * guard, .height = kReuseHeight + 2 * guard});
     EXPECT_TRUE(renderer.has_value());
     return std::make_unique<LayerRenderer>(std::move(renderer.value()));
   }
@@ -96,8 +97,8 @@ double covered(const LayerImage& image) {
 }
 
 bool isCovered(const LayerImage& image, int x, int y) {
-  return x >= 0 && y >= 0 && x < static_cast<int>(kWidth) && y < static_cast<int>(kHeight) &&
-         image.pixels[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)].alpha >= 0.5f;
+  return x >= 0 && y >= 0 && x < static_cast<int>(kReuseWidth) && y < static_cast<int>(kReuseHeight) &&
+         image.pixels[static_cast<std::size_t>(y) * kReuseWidth + static_cast<std::size_t>(x)].alpha >= 0.5f;
 }
 
 // The largest distance, in pixels, from a pixel that one picture covers to the nearest one that the other
@@ -105,8 +106,8 @@ bool isCovered(const LayerImage& image, int x, int y) {
 double farthestCovered(const LayerImage& a, const LayerImage& b) {
   constexpr int kReach = 8;
   double farthest = 0.0;
-  for (int y = 0; y < static_cast<int>(kHeight); ++y) {
-    for (int x = 0; x < static_cast<int>(kWidth); ++x) {
+  for (int y = 0; y < static_cast<int>(kReuseHeight); ++y) {
+    for (int x = 0; x < static_cast<int>(kReuseWidth); ++x) {
       if (!isCovered(a, x, y) || isCovered(b, x, y)) {
         continue;
       }
@@ -132,8 +133,8 @@ TEST_F(LayerReuseTest, FirstImageIsWhatTheRendererDraws) {
   maker.wall(-4.0, 30.0, kGreen);
   for (const std::uint32_t guard : {0u, 7u, 24u}) {
     Reused reused(maker.scene, {.guard_px = guard});
-    EXPECT_EQ(reused.reuse.width(), kWidth);
-    EXPECT_EQ(reused.reuse.height(), kHeight);
+    EXPECT_EQ(reused.reuse.width(), kReuseWidth);
+    EXPECT_EQ(reused.reuse.height(), kReuseHeight);
     View view = testView();
     view.shift_x = 0.25 * (guard % 3);
     view.shift_y = -0.125 * (guard % 3);
@@ -170,8 +171,8 @@ TEST_F(LayerReuseTest, ParallelMovementByPartsOfAPixelMovesTheMiddleOfWhatIsCove
   const auto middle = [&] {
     double x = 0.0, y = 0.0;
     for (std::size_t i = 0; i < reused.image.pixels.size(); ++i) {
-      x += reused.image.pixels[i].alpha * static_cast<double>(i % kWidth);
-      y += reused.image.pixels[i].alpha * static_cast<double>(i / kWidth);
+      x += reused.image.pixels[i].alpha * static_cast<double>(i % kReuseWidth);
+      y += reused.image.pixels[i].alpha * static_cast<double>(i / kReuseWidth);
     }
     return std::pair(x / covered(reused.image), y / covered(reused.image));
   };
@@ -256,7 +257,7 @@ TEST_F(LayerReuseTest, WhatComesIntoViewIsDrawnUnlessTheGuardBandHasIt) {
     maker.box({x, -1, -1}, {x + 0.6f, 1, 1}, i % 2 ? kRed : kGreen);
   }
   const std::vector<ObjectId> all = allOf(maker.scene);
-  const double pixel = 1.0 / kHeight;  // of turning, in the middle of the picture
+  const double pixel = 1.0 / kReuseHeight;  // of turning, in the middle of the picture
   Reused without(maker.scene, {.tolerance_px = 1.5}),
       with(maker.scene, {.tolerance_px = 1.5, .guard_px = 12});
   EXPECT_TRUE(without.drawFrame(pannedView(0.0), {}, all));
@@ -264,8 +265,8 @@ TEST_F(LayerReuseTest, WhatComesIntoViewIsDrawnUnlessTheGuardBandHasIt) {
   EXPECT_TRUE(without.drawFrame(pannedView(5 * pixel), {}, all));
   EXPECT_FALSE(with.drawFrame(pannedView(5 * pixel), {}, all));
   // Far side and all: what has come in is there, to the last column.
-  for (std::uint32_t y = 0; y < kHeight; ++y) {
-    const std::size_t i = std::size_t{y} * kWidth + kWidth - 1;
+  for (std::uint32_t y = 0; y < kReuseHeight; ++y) {
+    const std::size_t i = std::size_t{y} * kReuseWidth + kReuseWidth - 1;
     EXPECT_NEAR(with.image.pixels[i].alpha, with.expected.pixels[i].alpha, 0.75f) << y;
   }
   EXPECT_LE(std::max(farthestCovered(with.image, with.expected), farthestCovered(with.expected, with.image)),
@@ -329,8 +330,8 @@ TEST_F(LayerReuseTest, AWindowMovedByWholePixelsShiftsTheImageExactly) {
   Reused reused(maker.scene, {.tolerance_px = 0.01});
   View view = testView();
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
-  view.shift_x = 2.0 * 3 / kWidth;
-  view.shift_y = -2.0 * 5 / kHeight;
+  view.shift_x = 2.0 * 3 / kReuseWidth;
+  view.shift_y = -2.0 * 5 / kReuseHeight;
   EXPECT_FALSE(reused.drawFrame(view, {}, ids({0})));
   EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3);
   EXPECT_GT(covered(reused.image), 300.0);
@@ -344,13 +345,13 @@ TEST_F(LayerReuseTest, LayersOutsideTheViewCostNothing) {
   for (const Mat4& outside :
        {shifted(30, 0, 0), shifted(0, -20, 0), shifted(0, 0, 40), shifted(0, 0, -2000)}) {
     EXPECT_FALSE(reused.drawFrame(testView(), {outside}, ids({0})));
-    EXPECT_EQ(reused.image.pixels, std::vector<ShapedPixel>(kWidth * kHeight));
+    EXPECT_EQ(reused.image.pixels, std::vector<ShapedPixel>(kReuseWidth * kReuseHeight));
   }
   EXPECT_FALSE(reused.drawFrame(testView(), {}, {}));
   EXPECT_FALSE(reused.drawFrame(testView(), {}, ids({1})));
   EXPECT_FALSE(reused.drawFrame(testView(), {}, ids({2, 4000000000u})));
   EXPECT_FALSE(reused.draw(ids({1}), {.depths = true}));
-  EXPECT_EQ(reused.image.depths, std::vector<float>(kWidth * kHeight, LayerImage::kNoDepth));
+  EXPECT_EQ(reused.image.depths, std::vector<float>(kReuseWidth * kReuseHeight, LayerImage::kNoDepth));
   EXPECT_EQ(reused.reuse.stats().layers, 0u);
 }
 
@@ -453,7 +454,7 @@ TEST_F(LayerReuseTest, WhatIsNotFiniteIsDrawnEachTimeAndHarmsNothingElse) {
         reused.begin(testView(), {frame == 2 ? Mat4{} : hostile, Mat4{}});
         const bool is_drawn = reused.draw(ids({0}));
         EXPECT_TRUE(std::isfinite(bad) || frame == 1 || is_drawn) << bad << ' ' << element;
-        EXPECT_EQ(reused.image.pixels.size(), std::size_t{kWidth} * kHeight);
+        EXPECT_EQ(reused.image.pixels.size(), std::size_t{kReuseWidth} * kReuseHeight);
         EXPECT_TRUE(std::isfinite(covered(reused.image)));
         reused.draw(ids({0, 1}));
         EXPECT_EQ(reused.draw(ids({1})), element == 0 && frame == 0);
@@ -495,7 +496,7 @@ TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {
       view.*member = bad;
       reused.begin(view);
       reused.reuse.image(ids({0}), {}, reused.image);
-      EXPECT_EQ(reused.image.pixels.size(), std::size_t{kWidth} * kHeight);
+      EXPECT_EQ(reused.image.pixels.size(), std::size_t{kReuseWidth} * kReuseHeight);
       reused.begin(testView({0.01, 0, 10}));
       reused.reuse.image(ids({0}), {}, reused.image);
       EXPECT_GT(covered(reused.image), 100.0);

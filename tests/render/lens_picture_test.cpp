@@ -18,7 +18,7 @@
 namespace sightline {
 namespace {
 
-constexpr std::uint32_t kWidth = 128, kHeight = 96;
+constexpr std::uint32_t kLensWidth = 128, kLensHeight = 96;
 constexpr std::array kMethods{LensMethod::kLayers, LensMethod::kSingleNormalised, LensMethod::kSingleSpread,
                               LensMethod::kAccumulation};
 
@@ -93,7 +93,7 @@ class LensPictureTest : public RenderTest {
   // Called when the scene is complete.
   void prepare() {
     Result<LayerRenderer> made =
-        LayerRenderer::create(maker_.scene.view(), {.width = kWidth, .height = kHeight});
+        LayerRenderer::create(maker_.scene.view(), {.width = kLensWidth, .height = kLensHeight});
     ASSERT_TRUE(made.has_value()) << made.error().message;
     renderer_ = std::make_unique<LayerRenderer>(std::move(*made));
     lens_picture_ = std::make_unique<LensPicture>(maker_.scene.view(), *renderer_);
@@ -163,7 +163,7 @@ class BlurredForeground : public LensPictureTest {
     if (edge_.pixels.empty()) {
       LayerImage alone;
       renderer_->draw(view_, std::span(&front_, 1), {}, alone);
-      blurEvenly(alone, circleOfConfusion(view_, settings_.lens, 5.0, kHeight), edge_);
+      blurEvenly(alone, circleOfConfusion(view_, settings_.lens, 5.0, kLensHeight), edge_);
     }
     return edge_.pixels[pixel].alpha > 0.02f && edge_.pixels[pixel].alpha < 0.98f;
   }
@@ -189,7 +189,9 @@ TEST_F(BlurredForeground, LeavesTheBackgroundInFocusSharp) {
   std::vector<ObjectId> all = tiles_;
   all.push_back(front_);
   const LayerImage pinhole = sharp(all);
-  const auto far_from_edge = [this](std::size_t i) { return i % kWidth > kWidth * 2 / 3 && !atEdge(i); };
+  const auto far_from_edge = [this](std::size_t i) {
+    return i % kLensWidth > kLensWidth * 2 / 3 && !atEdge(i);
+  };
   for (const LensMethod method : kMethods) {
     EXPECT_LT(rmsOf(by(method), pinhole, far_from_edge), 0.02) << static_cast<int>(method);
   }
@@ -218,13 +220,13 @@ TEST_F(LensPictureTest, AccumulationSpreadsByTheCircleOfConfusion) {
       settings.passes = 200;
       settings.sky = false;
       draw(layersOf({{object}}), settings, picture);
-      const double circle = circleOfConfusion(view_, settings.lens, depth, kHeight);
+      const double circle = circleOfConfusion(view_, settings.lens, depth, kLensHeight);
       ASSERT_GT(circle, 5.0);
       // Mean squares add: a disc's is d^2 / 16 in each direction, a square's w^2 / 12.
-      const double width = kHeight * size / (orthographic ? 8.0 : depth);
+      const double width = kLensHeight * size / (orthographic ? 8.0 : depth);
       const Spot spot = spotOf(picture);
-      EXPECT_NEAR(spot.x, 0.5 * kWidth, 0.1);
-      EXPECT_NEAR(spot.y, 0.5 * kHeight, 0.1);
+      EXPECT_NEAR(spot.x, 0.5 * kLensWidth, 0.1);
+      EXPECT_NEAR(spot.y, 0.5 * kLensHeight, 0.1);
       EXPECT_NEAR(std::sqrt(16.0 * (spot.xx - width * width / 12.0)), circle, 0.05 * circle) << orthographic;
       EXPECT_NEAR(std::sqrt(16.0 * (spot.yy - width * width / 12.0)), circle, 0.05 * circle) << orthographic;
 
@@ -311,7 +313,7 @@ TEST_F(LensPictureTest, TheSkyIsBlurredAsAtInfinity) {
   maker_.wall(30.0, 1.0, kRed);
   prepare();
   const LensSettings settings{.lens = {.focus = 2.0, .aperture = 0.2}};
-  const double circle = circleOfConfusion(view_, settings.lens, LayerImage::kNoDepth, kHeight);
+  const double circle = circleOfConfusion(view_, settings.lens, LayerImage::kNoDepth, kLensHeight);
   ASSERT_GT(circle, 5.0);
   LayerImage sky, expected, picture;
   renderer_->drawSky(view_, sky);

@@ -27,12 +27,6 @@ std::vector<std::size_t> partsOf(const MovingScene& scene, const char* of_class)
   return parts;
 }
 
-std::vector<Mat4> posesOf(const MovingScene& scene, std::uint32_t frame) {
-  std::vector<Mat4> poses(scene.parts.size());
-  scene.pose(frame, poses);
-  return poses;
-}
-
 // Expects a difference of at most 15 %.
 void expectAbout(double actual, double paper, const std::string& what) {
   EXPECT_NEAR(actual, paper, 0.15 * paper) << what;

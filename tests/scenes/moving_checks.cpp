@@ -34,6 +34,12 @@ std::string whatIsWrongWithPoses(const MovingScene& scene) {
 
 }  // namespace
 
+std::vector<Mat4> posesOf(const MovingScene& scene, std::uint32_t frame) {
+  std::vector<Mat4> poses(scene.parts.size());
+  scene.pose(frame, poses);
+  return poses;
+}
+
 Vec3d partFromWorld(const Mat4& world_from_part, const Vec3d& world) {
   const Mat4& m = world_from_part;
   const Vec3d p = world - Vec3d(m(0, 3), m(1, 3), m(2, 3));

@@ -2,11 +2,16 @@
 
 // Checks shared by the tests of the scenes with moving parts.
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scenes/moving_scene.h"
 
 namespace sightline::scene_checks {
+
+// The poses of all parts in the frame.
+std::vector<Mat4> posesOf(const MovingScene& scene, std::uint32_t frame);
 
 // Uses the inverse of a rigid pose.
 Vec3d partFromWorld(const Mat4& world_from_part, const Vec3d& world);

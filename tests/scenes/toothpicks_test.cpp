@@ -16,12 +16,6 @@ namespace {
 
 using namespace scene_checks;
 
-std::vector<Mat4> posesOf(const MovingScene& scene, std::uint32_t frame) {
-  std::vector<Mat4> poses(scene.parts.size());
-  scene.pose(frame, poses);
-  return poses;
-}
-
 // Both ends of a toothpick, whose long axis is its own y.
 std::array<Vec3d, 2> endsOf(const Mat4& pose, double half_length) {
   return {transformPoint(pose, {0, half_length, 0}), transformPoint(pose, {0, -half_length, 0})};

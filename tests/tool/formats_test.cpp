@@ -11,8 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kCity = "demo:city?copies=1";
-
 json written(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--json", "-"});
   const Outcome outcome = runTool(arguments);

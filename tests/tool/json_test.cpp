@@ -7,8 +7,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kCity = "demo:city?copies=1";
-
 json jsonOf(std::vector<std::string> arguments, int code = 0) {
   arguments.insert(arguments.end(), {"--json", "-"});
   const Outcome outcome = runTool(arguments);

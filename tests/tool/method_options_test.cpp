@@ -7,9 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kCity = "demo:city?copies=1";
-
-json culled(std::vector<std::string> options) {
+json culledCity(std::vector<std::string> options) {
   options.insert(options.begin(), {"cull", kCity, "--frames", "0:40:10", "--json", "-"});
   const Outcome outcome = runTool(options);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -27,16 +25,16 @@ std::vector<std::string> keysOf(const json& object) {
 
 TEST(MethodOptions, AMethodShowsItsOwnOptionsOnly) {
   using Keys = std::vector<std::string>;  // as parsed: ascending
-  EXPECT_EQ(keysOf(culled({"--method", "frustum"})["options"]), (Keys{"hierarchy", "object_boxes"}));
-  EXPECT_EQ(keysOf(culled({})["options"]),
+  EXPECT_EQ(keysOf(culledCity({"--method", "frustum"})["options"]), (Keys{"hierarchy", "object_boxes"}));
+  EXPECT_EQ(keysOf(culledCity({})["options"]),
             (Keys{"area_angle", "coherence", "detail_objects", "draw_object_us", "draw_triangle_us",
                   "hierarchy", "lambda_steps", "min_node_cost", "object_boxes", "occluder_count", "occluders",
                   "test_objects", "variant"}));
-  EXPECT_EQ(keysOf(culled({"--method", "supporting-planes"})["options"]),
+  EXPECT_EQ(keysOf(culledCity({"--method", "supporting-planes"})["options"]),
             (Keys{"area_angle", "detail_objects", "draw_object_us", "draw_triangle_us", "hierarchy", "joint",
                   "lambda_steps", "min_node_cost", "object_boxes", "occluder_count", "occluders", "planes",
                   "test_objects"}));
-  EXPECT_EQ(keysOf(culled({"--method", "supporting-planes", "--planes", "through-box"})["options"]),
+  EXPECT_EQ(keysOf(culledCity({"--method", "supporting-planes", "--planes", "through-box"})["options"]),
             (Keys{"area_angle", "coherence", "detail_objects", "draw_object_us", "draw_triangle_us",
                   "hierarchy", "joint", "lambda_steps", "min_node_cost", "object_boxes", "occluder_count",
                   "occluders", "planes", "relation_mib", "tangents", "test_objects"}));
@@ -79,30 +77,30 @@ TEST(MethodOptions, WhereDrawingCostsNothingFramesAreCulledByTheFrustumAlone) {
 }
 
 TEST(MethodOptions, ValuesComeBackAsTheyWereGiven) {
-  const json options = culled({"--method",
-                               "supporting-planes",
-                               "--hierarchy",
-                               "kd",
-                               "--occluders",
-                               "database",
-                               "--planes",
-                               "through-box",
-                               "--joint",
-                               "off",
-                               "--relation-mib",
-                               "0.25",
-                               "--tangents",
-                               "all-vertices",
-                               "--detail-objects",
-                               "on",
-                               "--detail-occluder-count",
-                               "3",
-                               "--database-directions",
-                               "6",
-                               "--database-occluder-count",
-                               "20",
-                               "--database-mib",
-                               "2.5"})["options"];
+  const json options = culledCity({"--method",
+                                   "supporting-planes",
+                                   "--hierarchy",
+                                   "kd",
+                                   "--occluders",
+                                   "database",
+                                   "--planes",
+                                   "through-box",
+                                   "--joint",
+                                   "off",
+                                   "--relation-mib",
+                                   "0.25",
+                                   "--tangents",
+                                   "all-vertices",
+                                   "--detail-objects",
+                                   "on",
+                                   "--detail-occluder-count",
+                                   "3",
+                                   "--database-directions",
+                                   "6",
+                                   "--database-occluder-count",
+                                   "20",
+                                   "--database-mib",
+                                   "2.5"})["options"];
   EXPECT_EQ(options["hierarchy"], "kd");
   EXPECT_EQ(options["occluders"], "database");
   EXPECT_EQ(options["planes"], "through-box");
@@ -148,7 +146,7 @@ TEST(MethodOptions, AnOptionMultipliesOnlyTheMethodsThatHaveIt) {
 }
 
 TEST(MethodOptions, FramesTellOfRelationsWhereTheyAreKept) {
-  const json cull = culled({"--method", "supporting-planes", "--planes", "through-box"});
+  const json cull = culledCity({"--method", "supporting-planes", "--planes", "through-box"});
   EXPECT_FALSE(cull.contains("database"));
   for (const json& frame : cull["frames"]) {
     for (const std::string key :
@@ -161,7 +159,7 @@ TEST(MethodOptions, FramesTellOfRelationsWhereTheyAreKept) {
   }
   EXPECT_GT(cull["frames"].back()["relations"]["reused"], 0);
   for (const std::string method : {"occlusion-tree", "supporting-planes"}) {
-    const json without = culled({"--method", method});
+    const json without = culledCity({"--method", method});
     for (const json& frame : without["frames"]) {
       EXPECT_FALSE(frame.contains("relations"));
       EXPECT_TRUE(frame.contains("nodes_tested_share"));
@@ -170,7 +168,7 @@ TEST(MethodOptions, FramesTellOfRelationsWhereTheyAreKept) {
 }
 
 TEST(MethodOptions, TheDatabaseIsToldOfWhereItIsUsed) {
-  const json cull = culled({"--occluders", "database", "--detail-objects", "on", "--no-times"});
+  const json cull = culledCity({"--occluders", "database", "--detail-objects", "on", "--no-times"});
   EXPECT_GT(cull["database"]["cells"], 0);
   EXPECT_EQ(cull["database"]["directions"], 32);
   EXPECT_GT(cull["database"]["bytes"], 0);
@@ -180,7 +178,7 @@ TEST(MethodOptions, TheDatabaseIsToldOfWhereItIsUsed) {
     EXPECT_GE(frame["detail"]["tested"], frame["detail"]["culled"]);
   }
   // What detail objects need is told apart.
-  const json without = culled({"--occluders", "database"});
+  const json without = culledCity({"--occluders", "database"});
   EXPECT_GT(without["database"]["build_us"], 0.0);
   EXPECT_EQ(without["database"]["bytes"], cull["database"]["bytes"]);
   EXPECT_FALSE(without.contains("detail_database"));
@@ -195,11 +193,11 @@ TEST(MethodOptions, WithoutRoomForRelationsTheAnswerIsTheSame) {
     return frames;
   };
   const std::vector<std::string> options{"--method", "supporting-planes", "--planes", "through-box"};
-  const json roomy = culled(options);
+  const json roomy = culledCity(options);
   for (const std::string mebibytes : {"0", "0.01"}) {
     std::vector<std::string> little = options;
     little.insert(little.end(), {"--relation-mib", mebibytes});
-    EXPECT_EQ(visible(culled(little)), visible(roomy)) << mebibytes;
+    EXPECT_EQ(visible(culledCity(little)), visible(roomy)) << mebibytes;
   }
 }
 

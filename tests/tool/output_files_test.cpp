@@ -7,9 +7,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kTriangle = "mtllib paint.mtl\nv 0 0 -5\nv 1 0 -5\nv 0 1 -5\nusemtl red\nf 1 2 3\n";
+const std::string kPaintedTriangle = "mtllib paint.mtl\nv 0 0 -5\nv 1 0 -5\nv 0 1 -5\nusemtl red\nf 1 2 3\n";
 const std::string kPaint = "newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 red.png\n";
-const std::string kPath =
+const std::string kTwoFrames =
     R"({"width":64,"height":36,"frames":[{"eye":[0,0,0],"forward":[0,0,-1]},{"eye":[1,0,0],"forward":[0,0,-1]}]})";
 
 class OutputFiles : public ::testing::Test {
@@ -18,15 +18,15 @@ class OutputFiles : public ::testing::Test {
   void expectKept(const std::vector<std::string>& arguments, const std::string& about = "the input itself") {
     const std::size_t before = folder_.entries();
     expectRefused(arguments, about);
-    EXPECT_EQ(contents(scene_), kTriangle) << ::testing::PrintToString(arguments);
-    EXPECT_EQ(contents(path_), kPath) << ::testing::PrintToString(arguments);
+    EXPECT_EQ(contents(scene_), kPaintedTriangle) << ::testing::PrintToString(arguments);
+    EXPECT_EQ(contents(path_), kTwoFrames) << ::testing::PrintToString(arguments);
     EXPECT_EQ(folder_.entries(), before) << ::testing::PrintToString(arguments);
   }
 
   TemporaryFolder folder_;
-  const std::string scene_ = folder_.write("s.obj", kTriangle);
+  const std::string scene_ = folder_.write("s.obj", kPaintedTriangle);
   const std::string paint_ = folder_.write("paint.mtl", kPaint);
-  const std::string path_ = folder_.write("p.json", kPath);
+  const std::string path_ = folder_.write("p.json", kTwoFrames);
 };
 
 TEST_F(OutputFiles, OfFramesAreNoInputsAndNoOtherOutputs) {
@@ -84,18 +84,18 @@ TEST_F(OutputFiles, OfASceneThatNamesADeviceAreCheckedAllTheSame) {
 }
 
 TEST_F(OutputFiles, AreNotThePathBesideTheScene) {
-  const std::string beside = folder_.write("walk.path.json", kPath);
+  const std::string beside = folder_.write("walk.path.json", kTwoFrames);
   expectKept({"cull", scene_, "--json", beside});
-  EXPECT_EQ(contents(beside), kPath);
+  EXPECT_EQ(contents(beside), kTwoFrames);
 }
 
 TEST_F(OutputFiles, OfAFolderAreNoInputs) {
-  const std::string inside = folder_.write("walk.json", kPath);
+  const std::string inside = folder_.write("walk.json", kTwoFrames);
   expectKept({"walk", scene_, "--path", inside, "-o", folder_.file(".")});
-  EXPECT_EQ(contents(inside), kPath);
-  const std::string tables = folder_.write("reproduce.json", kPath);
+  EXPECT_EQ(contents(inside), kTwoFrames);
+  const std::string tables = folder_.write("reproduce.json", kTwoFrames);
   expectKept({"reproduce", "coorg-teller", "--scene", scene_, "--path", tables, "-o", folder_.file(".")});
-  EXPECT_EQ(contents(tables), kPath);
+  EXPECT_EQ(contents(tables), kTwoFrames);
   expectKept({"walk", scene_, "--path", path_, "-o", path_}, "--output");
 }
 

@@ -10,13 +10,13 @@
 namespace sightline::tool {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPlotGap = std::numeric_limits<double>::quiet_NaN();
 
 Plot twoCurves() {
   return {.title = "Frame times",
           .x_label = "frame",
           .y_label = "frame time (ms)",
-          .series = {{"frustum", {10.0, 12.0, 11.0}}, {"occlusion-tree", {4.0, kNaN, 3.0}}}};
+          .series = {{"frustum", {10.0, 12.0, 11.0}}, {"occlusion-tree", {4.0, kPlotGap, 3.0}}}};
 }
 
 TEST(MarkupCheck, FindsWhatItIsThereToFind) {
@@ -98,7 +98,7 @@ TEST(Plot, OddDataStillMakeAPicture) {
   const double inf = std::numeric_limits<double>::infinity();
   const double huge = std::numeric_limits<double>::max();
   const std::vector<std::vector<double>> cases{
-      {},          {kNaN},           {5.0},       {0.0, 0.0},         {-3.0, -3.0},
+      {},          {kPlotGap},       {5.0},       {0.0, 0.0},         {-3.0, -3.0},
       {inf, -inf}, {1e-300, 2e-300}, {huge, 1.0}, {1e17, 1e17 + 16.0}};
   for (const std::vector<double>& values : cases) {
     for (const bool log_y : {false, true}) {

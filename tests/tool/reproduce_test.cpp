@@ -155,11 +155,12 @@ TEST(Reproduce, APathThatStandsStillHasNoSpeeds) {
   EXPECT_NE(result["notes"].dump().find("too short"), std::string::npos);
 }
 
-constexpr const char* kShip = "demo:ship?decks=3&rooms=4&machinery=8";
+constexpr const char* kShipWithMachinery = "demo:ship?decks=3&rooms=4&machinery=8";
 
 std::vector<std::string> tinyShip(std::vector<std::string> more) {
-  std::vector<std::string> arguments{"reproduce", "saona-vazquez", "--scene", kShip, "--depth",  "4",
-                                     "--frames",  "0:200:50",      "--width", "160", "--height", "90"};
+  std::vector<std::string> arguments{
+      "reproduce", "saona-vazquez", "--scene", kShipWithMachinery, "--depth", "4", "--frames",
+      "0:200:50",  "--width",       "160",     "--height",         "90"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -209,8 +210,8 @@ TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
   const double near_distance = 0.1 * std::sqrt(1.0 + (1.0 + 256.0 / 81.0) / 3.0);
   const TemporaryFolder folder;
   const Outcome bake =
-      runTool({"bake", kShip, "-o", folder.file("F.sight"), "--depth", "4", "--triangle-budget", "3000",
-               "--near-distance", std::to_string(near_distance + 1e-6), "--json", "-"});
+      runTool({"bake", kShipWithMachinery, "-o", folder.file("F.sight"), "--depth", "4", "--triangle-budget",
+               "3000", "--near-distance", std::to_string(near_distance + 1e-6), "--json", "-"});
   ASSERT_EQ(bake.code, 0) << bake.err;
   const json baked = parse(bake.out);
   const json& tables = result["experiments"];

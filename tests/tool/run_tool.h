@@ -17,6 +17,9 @@
 
 namespace sightline::tool_test {
 
+// A small scene, for tests that need any.
+inline const std::string kCity = "demo:city?copies=1";
+
 // A new folder that the destructor removes.
 class TemporaryFolder {
  public:

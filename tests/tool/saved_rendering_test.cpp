@@ -22,15 +22,15 @@ class SavedRendering : public ::testing::Test {
   }
 };
 
-const SavedRenderingOptions kSmall{.height = 40,
-                                   .samples = 1,
-                                   .guard_px = 6,
-                                   .max_frames = 4,
-                                   .grids = {5},
-                                   .tolerances_px = {0.0, 0.5, 3.0}};
+const SavedRenderingOptions kShortRendering{.height = 40,
+                                            .samples = 1,
+                                            .guard_px = 6,
+                                            .max_frames = 4,
+                                            .grids = {5},
+                                            .tolerances_px = {0.0, 0.5, 3.0}};
 
 TEST_F(SavedRendering, DrawsLessAndDiffersMoreTheMoreIsTolerated) {
-  const std::vector<Experiment> tables = measured(kSmall);
+  const std::vector<Experiment> tables = measured(kShortRendering);
   ASSERT_EQ(tables.size(), 2u);
   const std::vector<Json>& rows = tables[0].rows;
   ASSERT_EQ(rows.size(), 6u);
@@ -56,7 +56,7 @@ TEST_F(SavedRendering, DrawsLessAndDiffersMoreTheMoreIsTolerated) {
 }
 
 TEST_F(SavedRendering, UpdateRatesStandBesideThePapers) {
-  SavedRenderingOptions options = kSmall;
+  SavedRenderingOptions options = kShortRendering;
   options.toothpicks = false;
   const std::vector<Experiment> tables = measured(options);
   const std::vector<Json>& rows = tables[1].rows;
@@ -92,7 +92,7 @@ TEST_F(SavedRendering, ShortFormTakesFewFrames) {
 }
 
 TEST_F(SavedRendering, PicturesThatCannotBeMadeAreAnError) {
-  SavedRenderingOptions options = kSmall;
+  SavedRenderingOptions options = kShortRendering;
   options.height = 100000;
   EXPECT_FALSE(savedRendering(options).has_value());
 }

@@ -5,8 +5,6 @@
 namespace sightline::tool_test {
 namespace {
 
-const std::string kCity = "demo:city?copies=1";
-
 TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
   EXPECT_EQ(runTool({"--help"}).code, 0);
   EXPECT_EQ(runTool({"--version"}).code, 0);
@@ -119,7 +117,7 @@ TEST(Tool, FilesThatAreNoPathsAreRefused) {
   EXPECT_EQ(runTool({"cull", kCity, "--path", good}).code, 0);
 }
 
-const std::string kTriangle = "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n";
+const std::string kFacingTriangle = "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n";
 
 TEST(Tool, KeysThatAPathDoesNotHaveAreNamed) {
   const TemporaryFolder folder;
@@ -144,14 +142,14 @@ TEST(Tool, KeysThatAPathDoesNotHaveAreNamed) {
 
 TEST(Tool, AFileWithoutCameraNeedsAPath) {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("triangle.obj", kTriangle);
+  const std::string scene = folder.write("triangle.obj", kFacingTriangle);
   EXPECT_EQ(runTool({"info", scene}).code, 0);
   expectRefused({"cull", scene}, "--path");
 }
 
 TEST(Tool, ThePathBesideASceneIsUsedAndSaid) {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("triangle.obj", kTriangle);
+  const std::string scene = folder.write("triangle.obj", kFacingTriangle);
   folder.write("walk.path.json", pathWith("[0,0,0]"));
   const Outcome outcome = runTool({"cull", scene, "--json", "-"});
   EXPECT_EQ(outcome.code, 0);

@@ -25,7 +25,7 @@ namespace sightline::tool {
 namespace {
 
 // Files in the folder of the report.
-constexpr const char *kPage = "index.html", *kBenchJson = "bench.json", *kBenchCsv = "bench.csv";
+constexpr const char *kBenchPage = "index.html", *kBenchJson = "bench.json", *kBenchCsv = "bench.csv";
 
 struct BenchOptions {
   std::vector<std::string> scenes;
@@ -74,7 +74,7 @@ Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
 
 Status writeFolder(const BenchOptions& options, const std::vector<BenchRecord>& records) {
   const std::string page = benchReport(records, options.command_line);
-  for (const Status& status : {writeFile(options.folder + "/" + kPage, page),
+  for (const Status& status : {writeFile(options.folder + "/" + kBenchPage, page),
                                writeOutput(options.folder + "/" + kBenchJson, benchJson(records)),
                                writeOutput(options.folder + "/" + kBenchCsv, benchCsv(records))}) {
     if (!status) {
@@ -115,7 +115,7 @@ Result<ExitCode> writeResults(const BenchOptions& options, const std::vector<Ben
       fmt::print("{}{}{}\n\n", benchNotes(record), benchTable(record), record.advice.sentence);
     }
     if (!options.folder.empty()) {
-      fmt::print("report: {}\n", (std::filesystem::path(options.folder) / kPage).string());
+      fmt::print("report: {}\n", (std::filesystem::path(options.folder) / kBenchPage).string());
     }
   }
   return noneMissed(records) ? kOk : kCheckFailed;
@@ -126,7 +126,7 @@ Status checkFilesOf(const BenchOptions& options) {
                      .outputs = {{"--json", options.output.json},
                                  {"--csv", options.csv},
                                  {"--prepared", options.method.prepared}},
-                     .folder = {"--output", options.folder, {kPage, kBenchJson, kBenchCsv}}};
+                     .folder = {"--output", options.folder, {kBenchPage, kBenchJson, kBenchCsv}}};
   for (const std::string& scene : options.scenes) {
     for (const NamedFile& input : walkInputs(scene, options.path, options.method.baked)) {
       files.inputs.push_back(input);

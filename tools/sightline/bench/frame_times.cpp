@@ -7,7 +7,7 @@ namespace sightline::tool {
 namespace {
 
 template <typename Statistic>
-RoundSpread spreadOf(std::span<const double> samples, std::size_t rounds, Statistic&& statistic) {
+RoundSpread roundSpreadOf(std::span<const double> samples, std::size_t rounds, Statistic&& statistic) {
   if (samples.empty() || rounds == 0) {
     return {};
   }
@@ -32,7 +32,7 @@ double medianOf(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-double meanOf(std::span<const double> values) {
+double meanTime(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) {
     sum += value;
@@ -53,10 +53,11 @@ FrameTimes frameTimesOf(std::span<const double> samples, std::size_t rounds) {
   const auto copy = [](std::span<const double> values) {
     return std::vector<double>(values.begin(), values.end());
   };
-  return {spreadOf(samples, rounds, [&](std::span<const double> values) { return medianOf(copy(values)); }),
-          spreadOf(samples, rounds, meanOf), spreadOf(samples, rounds, [&](std::span<const double> values) {
-            return percentileOf(copy(values), 0.99);
-          })};
+  return {
+      roundSpreadOf(samples, rounds, [&](std::span<const double> values) { return medianOf(copy(values)); }),
+      roundSpreadOf(samples, rounds, meanTime),
+      roundSpreadOf(samples, rounds,
+                    [&](std::span<const double> values) { return percentileOf(copy(values), 0.99); })};
 }
 
 }  // namespace sightline::tool

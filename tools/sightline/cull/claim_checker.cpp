@@ -39,7 +39,7 @@ bool before(const JudgedUse& a, const JudgedUse& b) {
   return a.use < b.use;
 }
 
-enum class Verdict : std::uint8_t { kProved, kSurvived, kContradicted };
+enum class ClaimVerdict : std::uint8_t { kProved, kSurvived, kContradicted };
 
 // Whether one object or surface hides all that the witness is about, from all of its region.
 bool namesObject(const HidingWitness& witness) {
@@ -261,7 +261,7 @@ class Checker {
   }
 
   void decideClaims() {
-    std::vector<Verdict> verdicts(claims_.size(), Verdict::kProved);
+    std::vector<ClaimVerdict> verdicts(claims_.size(), ClaimVerdict::kProved);
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < claims_.size(); ++i) {
       if (!isProved(claims_[i])) {
@@ -273,22 +273,22 @@ class Checker {
     for (std::size_t i = 0; i < claims_.size(); ++i) {
       CheckRow& row = report_.rows[rowOf(claims_[i])];
       row.claims += 1;
-      row.proved += verdicts[i] == Verdict::kProved ? 1 : 0;
-      row.survived += verdicts[i] == Verdict::kSurvived ? 1 : 0;
-      row.contradicted += verdicts[i] == Verdict::kContradicted ? 1 : 0;
+      row.proved += verdicts[i] == ClaimVerdict::kProved ? 1 : 0;
+      row.survived += verdicts[i] == ClaimVerdict::kSurvived ? 1 : 0;
+      row.contradicted += verdicts[i] == ClaimVerdict::kContradicted ? 1 : 0;
       report_.inherited += claims_[i].witnesses.place == WitnessPlace::kAround ? 1 : 0;
     }
     for (std::size_t i = 0; i < open.size(); ++i) {
-      if (verdicts[open[i]] == Verdict::kContradicted) {
+      if (verdicts[open[i]] == ClaimVerdict::kContradicted) {
         report_.contradicted.push_back(found[i]);
       }
     }
   }
 
-  Verdict decide(const Claim& claim, ContradictedClaim& found) const {
+  ClaimVerdict decide(const Claim& claim, ContradictedClaim& found) const {
     const EyeRegion region = regionOf(octree_, cells_[claim.leaf], claim.leaf, claim.part);
     if (proof_.provesInParts(regionClaim(region, claim.position, {}), settings_.divisions)) {
-      return Verdict::kProved;
+      return ClaimVerdict::kProved;
     }
     RegionSearchSettings search;
     search.near_distance = baked_.record().near_distance;
@@ -297,10 +297,10 @@ class Checker {
     const ObjectId object = objectAt(claim.position);
     const RegionAnswer answer = search_.contradict(region, object, search, seedOf(claim, object));
     if (!answer.found) {
-      return Verdict::kSurvived;
+      return ClaimVerdict::kSurvived;
     }
     found = {claim.leaf, object, answer.eye, answer.witness.point};
-    return Verdict::kContradicted;
+    return ClaimVerdict::kContradicted;
   }
 
   std::uint64_t seedOf(const Claim& claim, ObjectId object) const {

@@ -21,7 +21,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kMaxListed = 20;  // false culls listed on the terminal; JSON has all
+constexpr std::size_t kMaxListedCulls = 20;  // false culls listed on the terminal; JSON has all
 
 struct VerifyOptions {
   CommonOptions common;
@@ -185,7 +185,7 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
   for (const VerifyRun& run : runs) {
     total += run.false_culls.size();
     for (const FalseCull& wrong : run.false_culls) {
-      if (listed < kMaxListed) {
+      if (listed < kMaxListedCulls) {
         const Vec3d point = wrong.sighting.witness.point + scene.origin;
         fmt::print("false cull: object {} '{}' in frame {}, seen at {:.6f} {:.6f} {:.6f} ({}); {} ({})\n",
                    wrong.sighting.witness.object.value,

@@ -15,7 +15,7 @@
 namespace sightline::tool {
 namespace {
 
-struct Totals {
+struct DrawingTotals {
   std::uint64_t frames = 0, lines = 0, pieces = 0, strokes = 0, tests = 0, pairs = 0, all_pairs = 0;
   std::uint64_t svg_bytes = 0, pdf_bytes = 0, largest_group = 0;
   double draw_us = 0.0;
@@ -148,7 +148,7 @@ class LayerDrawings : public FrameMaker {
   DrawingSettings settings_;
   DrawingStyle style_;
   Scene posed_;
-  Totals totals_;
+  DrawingTotals totals_;
 };
 
 }  // namespace

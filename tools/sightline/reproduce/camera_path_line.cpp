@@ -5,13 +5,13 @@
 namespace sightline::tool {
 namespace {
 
-Vec3d between(const Vec3d& a, const Vec3d& b, double t) {
+Vec3d pointBetween(const Vec3d& a, const Vec3d& b, double t) {
   return a * (1.0 - t) + b * t;
 }
 
 // A direction between two; the nearer one of them if they cancel out.
 Vec3d directionBetween(const Vec3d& a, const Vec3d& b, double t) {
-  const Vec3d sum = between(normalized(a), normalized(b), t);
+  const Vec3d sum = pointBetween(normalized(a), normalized(b), t);
   constexpr double kCancelled = 1e-6;
   return sightline::length(sum) > kCancelled ? sum : t < 0.5 ? a : b;
 }
@@ -35,7 +35,7 @@ CameraFrame CameraPathLine::at(double distance) const {
   const double begin = distances_[next - 1];
   const double t = std::clamp((distance - begin) / (distances_[next] - begin), 0.0, 1.0);
   const CameraFrame &a = path_.frames[next - 1], &b = path_.frames[next];
-  return {between(a.eye, b.eye, t), directionBetween(a.forward, b.forward, t),
+  return {pointBetween(a.eye, b.eye, t), directionBetween(a.forward, b.forward, t),
           directionBetween(a.up, b.up, t)};
 }
 

@@ -8,7 +8,7 @@
 namespace sightline::tool::coorg_teller {
 namespace {
 
-constexpr double kMebibyte = 1024.0 * 1024.0;
+constexpr double kBytesPerMebibyte = 1024.0 * 1024.0;
 // Microseconds that drawing a triangle takes in the models of renderers, from fast to slow.
 constexpr double kTriangleUs[] = {0.01, 0.1, 1.0, 10.0};
 
@@ -218,10 +218,10 @@ Experiment memory(const std::vector<SceneTimes>& scenes) {
          {"triangles", measured.input.scene.triangleCount()},
          {"potential_occluders", measured.data.occluders().occluders.size()},
          {"relations", kept.peak("relations", "kept")},
-         {"relation_mib", static_cast<double>(kept.peak("relations", "bytes")) / kMebibyte},
+         {"relation_mib", static_cast<double>(kept.peak("relations", "bytes")) / kBytesPerMebibyte},
          {"database_cells", database.cellCount()},
          {"database_directions", database.directionCount()},
-         {"database_mib", static_cast<double>(database.bytes()) / kMebibyte},
+         {"database_mib", static_cast<double>(database.bytes()) / kBytesPerMebibyte},
          {"database_build_ms", measured.data.database()->build_us * 1e-3}});
   }
   return experiment;

@@ -71,7 +71,7 @@ void walkStretch(Walkers& walkers, const CameraPathLine& line, const Vec3d& orig
   }
 }
 
-SpeedResult meanOf(SpeedResult sum) {
+SpeedResult meanSpeed(SpeedResult sum) {
   for (double* value : {&sum.frustum_us, &sum.coherent_us, &sum.incoherent_us, &sum.through_eye_us,
                         &sum.reused, &sum.unchanged, &sum.rebuilt}) {
     *value /= static_cast<double>(sum.frames);
@@ -102,7 +102,7 @@ std::vector<SpeedResult> measureSpeeds(const SceneAndWalk& input, CullingData& d
       progress.update((stretch + 1.0 - 0.5 / sum.speed) / kStretches);
     }
   }
-  std::transform(sums.begin(), sums.end(), sums.begin(), meanOf);
+  std::transform(sums.begin(), sums.end(), sums.begin(), meanSpeed);
   return sums;
 }
 

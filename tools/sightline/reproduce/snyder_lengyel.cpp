@@ -18,7 +18,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::uint32_t kShortFrames = 25;
+constexpr std::uint32_t kShortSortFrames = 25;
 
 template <typename T>
 void append(std::vector<T>& to, std::vector<T> items) {
@@ -40,7 +40,7 @@ LayerTotals sortFrames(
   LayerSorter sorter = makeSorter(scene, settings);
   LayerTotals totals;
   std::vector<Mat4> poses;
-  const std::uint32_t frames = options.fewer_frames ? std::min(kShortFrames, scene.frames) : scene.frames;
+  const std::uint32_t frames = options.fewer_frames ? std::min(kShortSortFrames, scene.frames) : scene.frames;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {
     const View view = scene.scene.paths.front().view(frame, scene.scene.origin);
     pose(scene, frame, poses, sorter);

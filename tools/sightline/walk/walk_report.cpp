@@ -17,10 +17,10 @@ constexpr const char* kTiesNote =
     "Ties: pictures that differ only where a hidden surface is nearer to its occluder than the depth buffer "
     "resolves; nothing was culled wrongly.";
 
-double objectsOf(const FrameRecord& frame) {
+double objectsDrawn(const FrameRecord& frame) {
   return static_cast<double>(frame.objects);
 }
-double trianglesOf(const FrameRecord& frame) {
+double trianglesDrawn(const FrameRecord& frame) {
   return static_cast<double>(frame.triangles);
 }
 double cullMs(const FrameRecord& frame) {
@@ -206,9 +206,9 @@ ReportRow rowOf(const WalkRun& run, const WalkRecord& record) {
   ReportRow row;
   row.method = methodName(run.setting);
   row.options = optionsText(run.setting);
-  row.triangles = run.mean(trianglesOf);
-  row.triangles_share = ratio(row.triangles, baseline.mean(trianglesOf));
-  row.objects = run.mean(objectsOf);
+  row.triangles = run.mean(trianglesDrawn);
+  row.triangles_share = ratio(row.triangles, baseline.mean(trianglesDrawn));
+  row.objects = run.mean(objectsDrawn);
   row.cull_ms = run.mean(cullMs);
   row.draw_ms = run.mean(drawMs);
   row.frame_ms = run.mean(frameMs);
@@ -239,7 +239,7 @@ std::string statisticsText(const WalkRun& run) {
 }
 
 std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk) {
-  std::vector<Plot> plots{plotOf(record, walk, "Triangles drawn", "triangles", true, trianglesOf)};
+  std::vector<Plot> plots{plotOf(record, walk, "Triangles drawn", "triangles", true, trianglesDrawn)};
   if (!record.device.empty()) {
     plots.push_back(plotOf(record, walk, "Frame time: culling and drawing", "ms", true, frameMs));
   }
