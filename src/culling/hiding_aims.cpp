@@ -4,9 +4,11 @@
 
 namespace sightline::culling {
 
-void HidingAims::beginView() {
+void HidingAims::beginView(bool jumped) {
   tried_.beginView();
-  ++views_;
+  // Little is drawn after a jump, so that the next view is one in which kept objects are aimed at.
+  views_ = jumped ? kViewsBetweenTries - 1 : views_ + 1;
+  saved_work_ = jumped ? 0.0 : saved_work_;
   boxes_.clear();
   aimed_at_.clear();
 }
@@ -16,7 +18,9 @@ void HidingAims::aimAtHidden(std::span<const Box> boxes, std::span<const ObjectI
   append(objects);
 }
 
-double HidingAims::aimAtShown(std::span<const ObjectId> shown, std::span<const ObjectId> news, double drawn) {
+std::uint32_t HidingAims::aimAtShown(std::span<const ObjectId> shown, std::span<const ObjectId> news,
+                                     double drawn, std::uint32_t left) {
+  aimed_at_.reserve(shown.size());
   aimed_at_.assign(news.begin(), news.end());
   if (!news.empty() || views_ % kViewsBetweenTries == 0) {
     for (const ObjectId object : shown) {
@@ -26,15 +30,17 @@ double HidingAims::aimAtShown(std::span<const ObjectId> shown, std::span<const O
     }
   }
   const auto tries = static_cast<double>(aimed_at_.size() - news.size());
-  owed_ += kWorkForNew * static_cast<double>(news.size()) + kWorkForTry * tries;
-  if (aimed_at_.empty() || owed_ <= kLeastPart * drawn) {
+  saved_work_ += kWorkForNew * static_cast<double>(news.size()) + kWorkForTry * tries;
+  const double most = std::max(kMaxShare * drawn, kMinCap);
+  const auto worth = static_cast<std::uint32_t>(std::min({saved_work_, most, static_cast<double>(left)}));
+  if (aimed_at_.empty() || saved_work_ <= kMinShare * drawn || worth == 0) {
     aimed_at_.clear();
-    return 0.0;
+    return 0;
   }
+  saved_work_ = std::min(saved_work_ - worth, most);
   boxes_.clear();
+  boxes_.reserve(shown.size());
   append(aimed_at_);
-  const double worth = std::min(owed_, std::max(kMostPart * drawn, kMostAtOnce));
-  owed_ -= worth;
   return worth;
 }
 

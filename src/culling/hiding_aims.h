@@ -18,20 +18,21 @@ namespace sightline::culling {
 // up over the views until it is worth while.
 class HidingAims {
  public:
-  // At most so many boxes that were hidden in the last view are aimed at.
-  static constexpr std::size_t kMostHidden = 128;
+  // So many boxes that were hidden in the last view are enough.
+  static constexpr std::size_t kMaxHiddenBoxes = 128;
 
   // bounds: of all objects; they must outlive this.
   explicit HidingAims(std::span<const Box> bounds = {}) : bounds_(bounds), tried_(bounds.size()) {}
 
-  // A view begins. There is nothing to be hidden yet.
-  void beginView();
+  // A view begins. There is nothing to be hidden yet. jumped: it has nothing to do with the last one.
+  void beginView(bool jumped);
   // Aims at boxes that the last view hid, and at objects that it hid.
   void aimAtHidden(std::span<const Box> boxes, std::span<const ObjectId> objects);
-  // Aims instead at some of the objects that the depth buffer shows: at those that are new since the last
-  // view, and others. drawn: work that was done in this view. Returns the work that may be done for them, 0
-  // if it is not worth while yet.
-  double aimAtShown(std::span<const ObjectId> shown, std::span<const ObjectId> news, double drawn);
+  // Aims instead at objects that the depth buffer shows: at all that are new since the last view, and in some
+  // views at others. drawn: work that was done in this view; left: work that may be done. Returns the work
+  // that may be done for them, at most `left`, or 0 if that is to wait.
+  std::uint32_t aimAtShown(std::span<const ObjectId> shown, std::span<const ObjectId> news, double drawn,
+                           std::uint32_t left);
   // What is to be hidden.
   std::span<const Box> boxes() const { return boxes_; }
   // The view ends. kept, news: objects that the depth buffer shows, and those of them that are new,
@@ -43,10 +44,10 @@ class HidingAims {
   static constexpr std::uint32_t kViewsBetweenTries = 4;
   // So much is drawn for each new object, and for each of the other ones.
   static constexpr double kWorkForNew = 50.0, kWorkForTry = 25.0;
-  // They are not aimed at before what is left of that, added up over the views, is more than this part of
-  // what was drawn before in the view. What is more than a larger part of it, and more than so much work, is
-  // left to later views.
-  static constexpr double kLeastPart = 1.5, kMostPart = 2.0, kMostAtOnce = 2000.0;
+  // All of that is saved up until it is more than kMinShare of what was drawn before in the view. Then at
+  // most kMaxShare of what was drawn is spent, or kMinCap if that is more; as much again may be left to later
+  // views.
+  static constexpr double kMinShare = 1.5, kMaxShare = 2.0, kMinCap = 2000.0;
 
   void append(std::span<const ObjectId> objects);
 
@@ -55,7 +56,7 @@ class HidingAims {
   DoubtMemory tried_;  // kept objects that were aimed at
   std::vector<ObjectId> aimed_at_;
   std::uint32_t views_ = 0;
-  double owed_ = 0.0;  // work that may be done in later views, see kMostPart
+  double saved_work_ = 0.0;
 };
 
 }  // namespace sightline::culling

@@ -14,10 +14,11 @@ class TimedBudget {
   // As SurfaceDrawing::budget counts.
   double work() const { return std::max(frame_us_ - rest_us_, 0.0) * (drawn_ / drawing_us_); }
 
-  // Reports a frame: what was drawn, how long building the frame's structure took, most of which is drawing,
-  // and how long all the rest did. What a frame took far beyond expectation, as when the thread had to wait,
-  // says little about the next one.
-  void frame(double drawn, double building_us, double rest_us) {
+  // Reports a frame: what was drawn first, how long building the frame's structure took, most of which is
+  // that drawing, what was drawn later, and how long all the rest took, later drawing included. What a frame
+  // took far beyond expectation, as when the thread had to wait, says little about the next one.
+  void frame(double drawn, double building_us, double drawn_later, double rest_us) {
+    rest_us = std::max(rest_us - drawn_later * (drawing_us_ / drawn_), 0.0);
     if (drawn > 0.0 && building_us > 0.0) {
       const double expected_us = drawn * (drawing_us_ / drawn_);
       drawn_ = kMemory * drawn_ + drawn;

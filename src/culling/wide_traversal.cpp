@@ -116,11 +116,12 @@ void WideTraversal::testAgain(const DepthPyramid& buffer, const TraversalOptions
   const auto tasks =
       static_cast<std::uint32_t>(std::min<std::size_t>((count + kBatch - 1) / kBatch, kMaxRanges));
   const auto testPart = [&](std::uint32_t begin, std::uint32_t end) {
-    const std::size_t first = count * begin / tasks;
-    if (begin < end) {
-      Task(*this, buffer, options, found_[begin])
-          .test(std::span(objects).subspan(first, count * end / tasks - first), child_of_object_);
+    if (begin == end) {
+      return;  // there may be no task at all
     }
+    const std::size_t first = count * begin / tasks;
+    Task(*this, buffer, options, found_[begin])
+        .test(std::span(objects).subspan(first, count * end / tasks - first), child_of_object_);
   };
   // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
   parallel_for(tasks, [&testPart](std::uint32_t begin, std::uint32_t end) { testPart(begin, end); });

@@ -38,12 +38,13 @@ class WideTraversal {
   void run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
            std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
 
-  // Removes from the objects that run() appended those that the buffer hides, now that more is drawn. All of
-  // them are tested alone. The result does not depend on parallel_for.
+  // Removes from the objects that run() appended for the same view those that the buffer hides, now that more
+  // is drawn. Each is tested by its own box, also with options.min_node_cost; no node is visited. Not for
+  // options.temporal_coherence. The result does not depend on parallel_for.
   void testAgain(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
                  std::vector<ObjectId>& objects, const ParallelFor& parallel_for = serialFor);
 
-  // Appends boxes of nodes and objects that the depth buffer hid in the last run, at most `most` of them.
+  // Appends boxes of nodes and objects that the depth buffer hid in the last view, at most `most` of them.
   // Where there are more they are spread over all of them, others in each turn.
   void appendHidden(std::size_t most, std::size_t turn, std::vector<Box>& boxes) const;
 
@@ -99,7 +100,8 @@ class WideTraversal {
   std::vector<std::uint32_t> child_of_object_;
   std::size_t object_count_;
   ObjectBits visible_;
-  // Children, in place of objects, that the buffer hid in this run, and in ascending order in the last one.
+  // Children, in place of objects, that the buffer hid in this run, and those of the last view: ascending,
+  // and then, ascending too, what testAgain() found.
   ObjectBits hidden_;
   std::vector<ObjectId> hidden_children_;
   std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again

@@ -79,8 +79,8 @@ void DepthPyramid::reserve(const SurfaceSet& surfaces) {
 
 void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                         const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->finished = false;
   impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
+  impl_->finished = impl_->finished && impl_->raster.surfaceStats().groups == 0;
 }
 
 SurfaceStats DepthPyramid::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,

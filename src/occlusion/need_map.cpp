@@ -13,12 +13,12 @@
 namespace sightline::occlusion {
 namespace {
 
-// Rows of squares, and the value of a bound in each, where it is nearest: `first` in the first one of the
-// first row, and so much more in each next one, at least `floor`.
+// A rectangle of squares, and a bound of depth in the corner of each in which it is nearest: `first` in the
+// first square, so much more for each column and each row, and never below `floor`.
 struct SquareRows {
   const float* open;
   std::size_t stride, rows, count;
-  float first, along_row, along_column, floor;
+  float first, per_column, per_row, floor;
 };
 
 }  // namespace
@@ -76,11 +76,11 @@ void lookAtSquares(const DepthTarget& target, std::int32_t row, std::int32_t fir
 // vector.
 std::size_t openBehind(const SquareRows& squares) {
   const std::size_t lanes = hn::Lanes(kSquares);
-  const auto floor = hn::Set(kSquares, squares.floor), step = hn::Set(kSquares, squares.along_row);
+  const auto floor = hn::Set(kSquares, squares.floor), step = hn::Set(kSquares, squares.per_column);
   std::size_t behind = 0;
   for (std::size_t row = 0; row < squares.rows; ++row) {
     const float* open = squares.open + squares.stride * row;
-    const auto first = hn::Set(kSquares, squares.first + squares.along_column * static_cast<float>(row));
+    const auto first = hn::Set(kSquares, squares.first + squares.per_row * static_cast<float>(row));
     for (std::size_t i = 0; i < squares.count; i += lanes) {
       const auto at = hn::Iota(kSquares, static_cast<float>(i));
       const auto depth = hn::Max(hn::Add(hn::Mul(at, step), first), floor);
@@ -149,8 +149,8 @@ std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, const DepthBound&
                            .first = depth.at_origin + corner +
                                     depth.along_y * (kStep * static_cast<float>(row)) +
                                     depth.along_x * (kStep * static_cast<float>(column)),
-                           .along_row = kStep * depth.along_x,
-                           .along_column = kStep * depth.along_y,
+                           .per_column = kStep * depth.along_x,
+                           .per_row = kStep * depth.along_y,
                            .floor = depth.floor};
   const std::size_t pixels = HWY_DYNAMIC_DISPATCH(openBehind)(squares) * kSize * kSize;
   return static_cast<std::uint32_t>(

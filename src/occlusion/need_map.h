@@ -24,8 +24,8 @@ class NeedMap {
   // and where the target has come nearer since.
   void look(const DepthTarget& target, const PixelRectangle& rectangle);
 
-  // How many pixels of a rectangle may be of use for a surface that gets these depths; or more, but for
-  // rounding.
+  // An upper bound, but for rounding, of the pixels of a rectangle in which a surface with these depths may
+  // hide something of a box.
   std::uint32_t pixels(const PixelRectangle& rectangle, const DepthBound& depth) const;
   // The same for one that is nowhere nearer than this reciprocal depth.
   std::uint32_t pixels(const PixelRectangle& rectangle, float nearest) const {
@@ -45,8 +45,8 @@ class NeedMap {
 
   std::int32_t stride_ = 0;  // squares of a row, and room for a vector
   std::vector<float> farthest_, nearest_;
-  // What surfaces must be before to be of use: the farthest box, or what there is in the farthest pixel,
-  // where that does not hide all; else infinite.
+  // A surface is of use in a square only where it is nearer than this: than the farthest box and the
+  // farthest pixel there. Infinite where the farthest pixel hides even the nearest box.
   std::vector<float> open_;
 };
 

@@ -187,8 +187,10 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
                   !leavesOut(part_rests_[image.part]);
   listPatches(part, together);
-  const std::uint32_t of_patches = countWanted();
-  together = together && pays(std::min(pixels, of_patches), part.edge_count);
+  // What adjoins the part is drawn for the seams alone, and is not counted.
+  const std::uint64_t patch_pixels = countWanted();
+  together = together &&
+             pays(static_cast<std::uint32_t>(std::min<std::uint64_t>(pixels, patch_pixels)), part.edge_count);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
   std::uint32_t shown = 0;
@@ -216,7 +218,6 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
       addPatch(patch, patch_rests_[patch.patch]);
     }
   }
-  stats_.patches += shown;
   if (together && shown > 0) {
     const std::size_t own = view_.clusters().size();
     view_.addClusters(adjoining);
@@ -231,9 +232,9 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
 }
 
 // Sets wanted_ to the pixels in which each of shown_ may gain something, and returns their sum.
-std::uint32_t SurfaceRaster::countWanted() {
+std::uint64_t SurfaceRaster::countWanted() {
   wanted_.clear();
-  std::uint32_t sum = 0;
+  std::uint64_t sum = 0;
   for (PatchImage& patch : shown_) {
     std::uint32_t pixels = map_.wanted(patch.rectangle, patch.nearest);
     if (pixels > 0 && patch.sign != 0) {
@@ -241,6 +242,7 @@ std::uint32_t SurfaceRaster::countWanted() {
       pixels = std::min(pixels, map_.wanted(patch.rectangle, patch.depth));
     }
     wanted_.push_back(pixels);
+    stats_.patches += pixels > 0 ? 1 : 0;
     sum += pixels;
   }
   return sum;

@@ -74,7 +74,7 @@ class SurfaceRaster {
   const Facing& facingOf(std::uint32_t patch);
   void addPart(const PartImage& part, std::uint32_t pixels);
   void listPatches(const SurfacePart& part, bool together);
-  std::uint32_t countWanted();
+  std::uint64_t countWanted();
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
                    const PixelRectangle& rectangle, Rest& rest);

@@ -45,7 +45,8 @@ class WindingMap {
     }
     return hides(rectangle, nearest) ? 0u : static_cast<std::uint32_t>(rectangle.area());
   }
-  // The same for one that gets these depths; with needs alone they tell more than the nearest of them.
+  // The same for one that gets these depths. With needs it is a closer bound than that of the nearest depth,
+  // without them the whole rectangle.
   std::uint32_t wanted(const PixelRectangle& rectangle, const DepthBound& depth) const {
     return needs_ != nullptr ? needs_->pixels(rectangle, depth)
                              : static_cast<std::uint32_t>(rectangle.area());

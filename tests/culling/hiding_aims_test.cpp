@@ -40,9 +40,10 @@ class HidingAimsTest : public testing::Test {
   HidingAimsTest() : bounds_(numberedBoxes()), aims_(bounds_) {}
 
   // A view that shows these objects and hides none of them.
-  double view(const std::vector<ObjectId>& shown, const std::vector<ObjectId>& news, double drawn) {
-    aims_.beginView();
-    const double work = aims_.aimAtShown(shown, news, drawn);
+  std::uint32_t view(const std::vector<ObjectId>& shown, const std::vector<ObjectId>& news, double drawn,
+                     std::uint32_t left = 60000) {
+    aims_.beginView(false);
+    const std::uint32_t work = aims_.aimAtShown(shown, news, drawn, left);
     aimed_at_ = objectsOf(aims_.boxes());
     aims_.endView(shown, news);
     return work;
@@ -54,47 +55,83 @@ class HidingAimsTest : public testing::Test {
 };
 
 TEST_F(HidingAimsTest, FirstComesWhatTheLastViewHid) {
-  aims_.beginView();
+  aims_.beginView(false);
   EXPECT_TRUE(aims_.boxes().empty());
   const Box box{Vec3f(50, 0, 0), Vec3f(60, 1, 1)};
   aims_.aimAtHidden({&box, 1}, numbers(3, 5));
   EXPECT_EQ(objectsOf(aims_.boxes()), (std::vector{ObjectId(3u), ObjectId(4u), ObjectId(50u)}));
-  aims_.beginView();
+  aims_.beginView(false);
   EXPECT_TRUE(aims_.boxes().empty());
 }
 
 TEST_F(HidingAimsTest, WhatIsNewIsAimedAtAtOnceWhereLittleWasDrawn) {
-  EXPECT_GT(view(numbers(0, 20), numbers(5, 8), 10.0), 0.0);
+  EXPECT_GT(view(numbers(0, 20), numbers(5, 8), 10.0), 0u);
   const std::vector<ObjectId> news = numbers(5, 8);
   EXPECT_TRUE(std::ranges::includes(aimed_at_, news));
+  view(numbers(0, 1), {}, 1e6);
+  EXPECT_TRUE(aimed_at_.empty()) << "and not in the next view";
+}
+
+TEST_F(HidingAimsTest, NoMoreIsSpentThanIsLeft) {
+  EXPECT_EQ(view(numbers(0, 20), numbers(0, 20), 10.0, 0), 0u);
+  EXPECT_EQ(view(numbers(0, 20), numbers(0, 20), 10.0, 7), 7u);
 }
 
 TEST_F(HidingAimsTest, WhatWasDrawnPutsOffWhatIsWorthLess) {
   // A single new object is worth less than a tenth of this.
   constexpr double kDrawn = 1500.0;
   int views = 1;
-  while (view(numbers(0, 1), numbers(0, 1), kDrawn) == 0.0) {
+  while (view(numbers(0, 1), numbers(0, 1), kDrawn) == 0) {
     ASSERT_LT(++views, 1000);
   }
   EXPECT_GT(views, 10);
 }
 
 TEST_F(HidingAimsTest, WorkThatIsTooMuchForOneViewIsLeftToLaterOnes) {
-  constexpr double kDrawn = 1000.0;
-  const double first = view(numbers(0, kObjects), numbers(0, kObjects), kDrawn);
-  EXPECT_GT(first, 0.0);
-  EXPECT_LE(first, 2.0 * kDrawn);
-  // Nothing is added in these views, for all of the objects rest.
-  const double second = view(numbers(0, kObjects), {}, kDrawn);
-  EXPECT_EQ(second, 0.0) << "there is nothing to aim at";
-  const double third = view(numbers(0, kObjects), numbers(0, 1), kDrawn);
-  EXPECT_GT(third, kDrawn) << "a new object alone is worth less";
+  // Where little was drawn, and where much was.
+  for (const double drawn : {100.0, 1200.0}) {
+    aims_ = HidingAims(bounds_);
+    const std::uint32_t first = view(numbers(0, kObjects), numbers(0, kObjects), drawn);
+    EXPECT_GT(first, drawn);
+    EXPECT_LE(first, std::max(2.0 * drawn, 2000.0));
+    EXPECT_GT(view(numbers(0, kObjects), numbers(0, 1), drawn), 0.9 * first) << "one alone is worth less";
+  }
+}
+
+TEST_F(HidingAimsTest, NotMuchIsSavedUp) {
+  for (int i = 0; i < 200; ++i) {
+    view(numbers(0, kObjects), numbers(0, kObjects), 500.0);
+  }
+  int views = 0;
+  while (view(numbers(0, 1), numbers(0, 1), 500.0) > 0) {
+    ASSERT_LT(++views, 4);
+  }
+}
+
+TEST_F(HidingAimsTest, AfterAJumpKeptObjectsAreAimedAtInTheNextView) {
+  for (int views_before = 0; views_before < 8; ++views_before) {
+    aims_ = HidingAims(bounds_);
+    for (int i = 0; i < views_before; ++i) {
+      view({}, {}, 1.0);
+    }
+    aims_.beginView(true);
+    aims_.endView(numbers(0, 10), numbers(0, 10));
+    EXPECT_GT(view(numbers(0, 10), {}, 1.0), 0u);
+    EXPECT_EQ(aimed_at_, numbers(0, 10));
+  }
+}
+
+TEST_F(HidingAimsTest, AJumpForgetsWhatWasSavedUp) {
+  view(numbers(0, 20), numbers(0, 20), 10000.0);
+  aims_.beginView(true);
+  aims_.endView({}, {});
+  EXPECT_EQ(view(numbers(0, 1), numbers(0, 1), 600.0), 0u);
 }
 
 TEST_F(HidingAimsTest, KeptObjectsAreAimedAtLessAndLessOften) {
   int early = 0, late = 0;
   for (int i = 0; i < 400; ++i) {
-    const bool aims = view(numbers(0, 1), {}, 1.0) > 0.0;
+    const bool aims = view(numbers(0, 1), {}, 1.0) > 0;
     (i < 40 ? early : late) += aims ? 1 : 0;
   }
   EXPECT_GT(early, 2);
@@ -106,11 +143,11 @@ TEST_F(HidingAimsTest, AnObjectThatComesBackIsNew) {
   for (int i = 0; i < 100; ++i) {
     view(numbers(0, 1), {}, 1.0);
   }
-  EXPECT_GT(view(numbers(0, 1), numbers(0, 1), 1.0), 0.0);
+  EXPECT_GT(view(numbers(0, 1), numbers(0, 1), 1.0), 0u);
   EXPECT_EQ(aimed_at_, numbers(0, 1));
   // After that it rests for a short time alone.
   int views = 1;
-  while (view(numbers(0, 1), {}, 1.0) == 0.0) {
+  while (view(numbers(0, 1), {}, 1.0) == 0) {
     ASSERT_LT(++views, 20);
   }
 }

@@ -938,6 +938,65 @@ TEST_P(RandomSurfaces, HideWhatTheyCover) {
   EXPECT_GT(all.covered, 4000u);
 }
 
+TEST_P(RandomSurfaces, HideWhatTheyCoverWhereOnlySomeAreDrawn) {
+  std::size_t covered = 0, useful = 0, fewer = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
+    const auto number = test::numbersFrom<double>(engine);
+    const auto rough = static_cast<float>(number(0.0, 4.0));
+    const double waves = number(0.1, 1.0), holes = number(0.0, 1.0) < 0.5 ? 0.0 : number(0.0, 0.1);
+    const Scene scene = sheet(
+        8 + static_cast<std::uint32_t>(number(0.0, 16.0)), 40.0f, 12.0f,
+        [&](float x, float y) {
+          return rough * static_cast<float>(std::sin(waves * x) * std::cos(waves * y));
+        },
+        [&](std::uint32_t) { return number(0.0, 1.0) < holes; }, number(0.0, 1.0) < 0.5);
+    const SurfaceSet surfaces =
+        findSurfaces(scene.view(), {.part_triangles = 60, .patch_triangles = 16, .cluster_triangles = 4});
+    View view = frontView();
+    view.eye = {number(-3.0, 3.0), number(-3.0, 3.0), number(-4.0, 3.0)};
+    setOrientation(view, {number(-0.7, 0.7), number(-0.7, 0.7), -1.0}, {0.0, 1.0, 0.0});
+    view.orthographic = GetParam();
+    view.ortho_height = 20.0;
+    std::vector<Box> targets;
+    const auto aim = [&] {
+      const Vec3f at(static_cast<float>(number(-15.0, 15.0)), static_cast<float>(number(-15.0, 15.0)),
+                     static_cast<float>(number(-40.0, -10.0)));
+      const auto size = static_cast<float>(number(0.5, 8.0));
+      targets.push_back({at, at + Vec3f(size, size, size)});
+    };
+    Rasteriser raster({.width = 24 + static_cast<std::uint32_t>(number(0.0, 40.0)), .height = 32});
+    SurfaceDrawing drawing = kEverything;
+    raster.begin(view);
+    raster.draw(surfaces, surfaces.objects, drawing);
+    const std::uint32_t all = raster.surfaceStats().groups;
+    aim();
+    drawing.targets = targets;
+    drawing.pixels_per_edge = number(0.0, 2.0);
+    raster.begin(view);
+    raster.draw(surfaces, surfaces.objects, drawing);
+    fewer += raster.surfaceStats().groups < all ? 1 : 0;
+    // The next view, in two steps: what was of use, and what is aimed at besides.
+    view.eye += Vec3d(number(-0.5, 0.5), number(-0.5, 0.5), number(-0.5, 0.5));
+    drawing.step = ViewStep::kNext;
+    drawing.useful_only = true;
+    raster.begin(view);
+    raster.draw(surfaces, {}, drawing);
+    useful += raster.surfaceStats().groups;
+    aim();
+    drawing.targets = targets;
+    drawing.step = ViewStep::kSame;
+    drawing.useful_only = false;
+    raster.draw(surfaces, surfaces.objects, drawing);
+    const Checked checked = prove(scene, view, raster.depthBuffer());
+    EXPECT_TRUE(checked.right()) << "seed " << seed;
+    covered += checked.covered;
+  }
+  EXPECT_GT(covered, 2000u);
+  EXPECT_GT(useful, 20u);
+  EXPECT_GT(fewer, 20u);
+}
+
 // A rotation and a translation.
 Mat4 placement(const Vec3d& forward, const Vec3d& up, const Vec3d& origin) {
   View axes;

@@ -208,16 +208,19 @@ TEST(WideTraversal, TellsWhatTheBufferHid) {
 }
 
 TEST(WideTraversal, RemovesWhatIsHiddenOnceMoreIsDrawn) {
-  std::size_t before = 0, after = 0;
+  std::size_t before = 0, after = 0, told = 0;
   for (const test::Family& family : test::kFamilies) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       Bed bed(family, seed, 700);
       const OccluderSet set = test::setOf(bed.scene.polygons);
       const std::vector<OccluderId> all = test::all(set);
       bed.pyramid.build(bed.scene.view, set, std::span(all).first(all.size() / 2));
-      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+      const HierarchyKind kind = demo_frames::kKinds[seed % std::size(demo_frames::kKinds)];
+      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = kind});
       WideTraversal traversal(bvh, bed.boxes), cut(bvh, bed.boxes);
       Answer answer = traversed(traversal, bed.pyramid), in_pieces = traversed(cut, bed.pyramid);
+      std::vector<Box> hidden_at_first, hidden, hidden_in_pieces;
+      traversal.appendHidden(10000, 0, hidden_at_first);
       std::vector<ObjectId> expected = answer.kept;
       const std::uint32_t asked = answer.stats.objects_tested + static_cast<std::uint32_t>(expected.size());
       before += expected.size();
@@ -233,13 +236,22 @@ TEST(WideTraversal, RemovesWhatIsHiddenOnceMoreIsDrawn) {
       EXPECT_EQ(answer.stats.objects_tested, asked);
       cut.testAgain(bed.pyramid, options, in_pieces.stats, in_pieces.kept, forPiecesBackwards);
       EXPECT_EQ(in_pieces.kept, expected) << "threads change it";
-      std::vector<Box> hidden;
       traversal.appendHidden(10000, 0, hidden);
       for (const Box& box : hidden) {
         EXPECT_EQ(bed.pyramid.classify(box), Visibility::kHidden);
       }
+      told += hidden.size() - hidden_at_first.size();
+      cut.appendHidden(10000, 0, hidden_in_pieces);
+      EXPECT_EQ(hidden_in_pieces, hidden) << "threads change it";
+      WideTraversal alone(bvh, bed.boxes);
+      EXPECT_EQ(traversed(traversal, bed.pyramid).kept, traversed(alone, bed.pyramid).kept);
+      std::vector<Box> hidden_then, hidden_alone;
+      traversal.appendHidden(10000, 0, hidden_then);
+      alone.appendHidden(10000, 0, hidden_alone);
+      EXPECT_EQ(hidden_then, hidden_alone) << "it is told in one view";
     }
   }
+  EXPECT_GT(told, 100u);
   EXPECT_GT(after, 1000u);
   EXPECT_GT(before - after, 100u);
 }
@@ -250,6 +262,8 @@ TEST(WideTraversal, WithoutObjectsARangeMayBeEmpty) {
   WideTraversal traversal(bvh, bed.boxes);
   Answer answer;
   traversal.run(bed.pyramid, {}, answer.stats, answer.kept, forPiecesBackwards);
+  traversal.testAgain(bed.pyramid, {.temporal_coherence = false}, answer.stats, answer.kept,
+                      forPiecesBackwards);
   EXPECT_TRUE(answer.kept.empty());
 }
 

@@ -30,10 +30,20 @@ struct NeedBed {
     for (std::size_t i = random.below(5); i > 0; --i) {
       boxes.push_back({randomRectangle(random), static_cast<float>(random.below(6))});
     }
+  }
+
+  void setNeeds() {
     map.clear(target());
     for (const ToHide& box : boxes) {
       map.add(box.rectangle, box.nearest);
     }
+  }
+  // Looks at all of the target, at some of it more than once.
+  void lookInPieces(test::Random& random) {
+    for (std::size_t i = random.below(3); i > 0; --i) {
+      map.look(target(), randomRectangle(random));
+    }
+    map.look(target(), {0, 0, width, height});
   }
 
   PixelRectangle randomRectangle(test::Random& random) const {
@@ -108,7 +118,8 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
                           of_sloping = bed.pixels(rectangle, sloping);
       for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
-        bed.map.look(bed.target(), {0, 0, bed.width, bed.height});
+        bed.setNeeds();
+        bed.lookInPieces(random);
         EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
         EXPECT_EQ(bed.map.pixels(rectangle, sloping), of_sloping) << n << ", " << hwy::TargetName(target);
         hwy::SetSupportedTargetsForTest(0);

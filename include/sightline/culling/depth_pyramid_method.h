@@ -36,8 +36,8 @@ struct DepthPyramidMethodSettings {
   // How surfaces are drawn; `step`, `targets` and `useful_only` are set anew in each frame.
   SurfaceDrawing drawing{};
   // More than 0: so many surfaces are drawn that a frame takes about so many microseconds, as far as drawing
-  // less can do that; at most those of drawing.budget, and as many again where many objects come into view.
-  // Then what is kept, always conservative, depends on measured times.
+  // less can do that, at most those of drawing.budget. Then what is kept, always conservative, depends on
+  // measured times.
   double budget_us = 0.0;
 };
 

@@ -121,7 +121,7 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  // Asks what the buffer does not hide.
+  // Asks what the buffer does not hide: all(), and again() once more has been drawn.
   struct Asking {
     DepthPyramidMethod& method;
     const CullingFrame& frame;
@@ -131,12 +131,13 @@ class DepthPyramidMethod final : public CullingMethod {
       method.traversal_->run(*method.pyramid_, options, stats, visible, *frame.parallel_for);
     }
     // Objects are tested one by one if that is less work than to ask for all anew.
-    void again(CullStats& stats, std::vector<ObjectId>& visible) {
+    void again(const CullStats& before, CullStats& stats, std::vector<ObjectId>& visible) {
       method.work_ += method.pyramid_->surfaceStats().work;
       method.pyramid_->finish(*frame.parallel_for);
       if (options.test_objects && visible.size() <= stats.nodes_tested + stats.objects_tested) {
         method.traversal_->testAgain(*method.pyramid_, options, stats, visible, *frame.parallel_for);
       } else {
+        stats = before;
         visible.clear();
         all(stats, visible);
       }
@@ -146,7 +147,7 @@ class DepthPyramidMethod final : public CullingMethod {
   void drawSurfaces(const CullingFrame& frame) {
     hidden_.clear();
     if (settings_.temporal_coherence && !frame.jumped && surfaces_.draws()) {
-      traversal_->appendHidden(culling::HidingAims::kMostHidden, turn_++, hidden_);
+      traversal_->appendHidden(culling::HidingAims::kMaxHiddenBoxes, turn_++, hidden_);
     }
     if (hidden_.empty()) {
       surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);

@@ -115,7 +115,7 @@ class OpacityMapMethod final : public CullingMethod {
   std::optional<double> triangleUs() const {
     return settings_.renderer != nullptr ? settings_.renderer->triangleUs() : settings_.triangle_us;
   }
-  // Asks what the map does not hide.
+  // Asks what the map does not hide: all(), and again() once more has been drawn.
   struct Asking {
     OpacityMapMethod& method;
     const CullingFrame& frame;
@@ -125,8 +125,9 @@ class OpacityMapMethod final : public CullingMethod {
       method.traversal_->run(frame.frustum, culling::optionsOf(frame, false), culling::AskAll{classify},
                              stats, visible);
     }
-    void again(CullStats& stats, std::vector<ObjectId>& visible) {
+    void again(const CullStats& before, CullStats& stats, std::vector<ObjectId>& visible) {
       method.map_->finish();
+      stats = before;
       visible.clear();
       all(stats, visible);
     }

@@ -19,9 +19,9 @@
 
 namespace sightline::culling {
 
-// Draws the surfaces of the objects that the last frame kept, all of them or those that hide something, and,
-// where these do not hide much of what comes into view, of that; after a jump of those in the frustum, first
-// of the nearest ones, then of what these do not hide.
+// Draws the surfaces of the objects that the last frame kept, all of them or those that hid something, and
+// where much comes into view, or may be hidden by now, what else may hide that; after a jump the surfaces of
+// the nearest objects in the frustum, and then of those that these do not hide.
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
@@ -63,7 +63,7 @@ class SurfaceDrawer {
     work_ = built_work_ = 0.0;
     groups_ = edges_ = 0;
     in_frustum_.clear();
-    aims_.beginView();
+    aims_.beginView(frame.jumped);
     jumped_ = frame.jumped;
     more_in_frustum_ = draws() && frame.jumped &&
                        !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
@@ -77,7 +77,7 @@ class SurfaceDrawer {
     work_ += built_work_;
   }
   // Draws only what hides something, in a view that follows the last one for which this buffer was drawn.
-  // hidden: boxes that the buffer hid in that view, at most HidingAims::kMostHidden. First comes what hid
+  // hidden: boxes that the buffer hid in that view, at most HidingAims::kMaxHiddenBoxes. First comes what hid
   // most there.
   template <typename Buffer>
   void drawWhatHides(Buffer& buffer, std::span<const Box> hidden, std::span<const ObjectId> last_visible) {
@@ -94,13 +94,15 @@ class SurfaceDrawer {
 
   // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
   // asking.all(stats, visible), which adds to the one and appends to the other, ascending. Where that calls
-  // for more surfaces to be drawn, draws them and removes what these hide, by asking.again(stats, visible).
+  // for more surfaces to be drawn, draws them and removes what these hide, by asking.again(before, stats,
+  // visible), where before is what the counts were at first: those of two whole traversals are not added up.
   template <typename Buffer, typename Asking>
   void traverse(Buffer& buffer, CullStats& stats, std::vector<ObjectId>& visible, Asking&& asking) {
+    const CullStats before = stats;
     asking.all(stats, visible);
     if (draws()) {
       if (drawFound(buffer, visible)) {
-        asking.again(stats, visible);
+        asking.again(before, stats, visible);
       }
       findNews(visible, last_kept_);
       last_kept_ = visible;
@@ -112,7 +114,7 @@ class SurfaceDrawer {
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
     usual_work_.frame(work_);
-    timed_.frame(built_work_, stats.build_us, stats.totalUs() - stats.build_us);
+    timed_.frame(built_work_, stats.build_us, work_ - built_work_, stats.totalUs() - stats.build_us);
   }
 
   // What counts in the budget of this frame.
@@ -176,17 +178,16 @@ class SurfaceDrawer {
     findNews(shown, last_kept_);
     const bool most_is_new = news_.size() * kStill > shown.size();
     if (!aims_.boxes().empty()) {
-      const double worth = aims_.aimAtShown(shown, news_, built_work_);
-      if (worth == 0.0) {
-        return false;
-      }
       SurfaceDrawing drawing = whatIsLeft(false);
       drawing.draw_resting = most_is_new;
+      drawing.budget = aims_.aimAtShown(shown, news_, built_work_, drawing.budget);
+      if (drawing.budget == 0) {
+        return false;
+      }
       drawing.targets = aims_.boxes();
-      drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, worth));
       draw(buffer, shown, ViewStep::kSame, drawing);
       work_ += count(buffer);
-      return true;
+      return buffer.surfaceStats().groups > 0;
     }
     if (!culling::changesFast(news_.size(), shown.size())) {
       return false;
@@ -245,7 +246,7 @@ class SurfaceDrawer {
   std::vector<ObjectId> in_frustum_;  // objects whose surfaces are drawn first after a jump
   bool more_in_frustum_ = false;      // whether there are others in the frustum
   std::vector<ObjectId> last_kept_, news_;
-  HidingAims aims_;  // without boxes: everything is drawn, whatever it hides
+  HidingAims aims_;  // while it has no boxes, surfaces are drawn whatever they hide
 };
 
 }  // namespace sightline::culling
