@@ -59,8 +59,8 @@ class RegionOcclusion {
   // longest of these passages.
   Answer decideThroughWindows(CellBox region, CellBox target, std::uint32_t object,
                               const RegionEffort& effort);
-  // Of all that is asked from now on, most is about lines of sight from its region to its window, and from
-  // there to its target.
+  // Tells that most of what is asked from now on is about lines of sight from the passage's region to its
+  // window, and from there to its target.
   void focusOn(const Passage& passage);
   // Halves the widest part of a passage that has been narrowed, and narrows both passages that this gives.
   // All lines of each have to be blocked. A half of which narrowing cuts nothing off is given up: dividing it

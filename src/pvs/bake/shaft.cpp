@@ -21,7 +21,7 @@ constexpr double kProductRounding = 0x1p-48;  // as a fraction of the normal and
 }  // namespace
 
 Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, double slack) {
-  // Of a product of a normal and a point, for each metre of the normal's size.
+  // A product of a normal and a point is rounded by at most so much for each metre of the normal's size.
   const double rounding = kProductRounding * magnitude + slack;
   const Vec3d margin{rounding, rounding, rounding};
   low_ = min(region.min, target.min) - margin;
