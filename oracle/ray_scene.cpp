@@ -38,10 +38,11 @@ void setRays(const RayScene::Batch& rays, std::uint32_t count, RTCRayHit16& pack
 
 }  // namespace
 
-// Passed to the filter by Embree; receives the hits of see-through triangles.
+// Passed to the filter by Embree; receives the hits of see-through triangles with one ray.
 struct RayScene::CollectContext {
   RTCIntersectContext base;
-  std::vector<RayHit>* hits;
+  std::uint32_t ray = 0;  // index in the batch
+  std::vector<RayHit>* hits = nullptr;
 };
 
 RayScene::RayScene(const SceneView& scene) {
@@ -136,7 +137,7 @@ void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
     }
     if (!back && !group.opaque) {
       auto* context = reinterpret_cast<CollectContext*>(arguments->context);
-      context->hits->push_back({RTCRayN_id(arguments->ray, n, i), ObjectId(group.object_of_prim[prim]),
+      context->hits->push_back({context->ray, ObjectId(group.object_of_prim[prim]),
                                 RTCRayN_tfar(arguments->ray, n, i), group.first_index_of_prim[prim], false});
     }
   }
@@ -165,8 +166,13 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
     }
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   }
-  if (has_see_through_) {
-    rtcIntersect16(valid, see_through_, &context.base, &packet);  // up to the opaque hit at tfar
+  // One by one, up to the opaque hit at tfar. Where the processor's vectors are too short for a packet, Embree
+  // traces it in parts, loses the ids of the rays, and also traces those that are not valid: the filter could
+  // not tell which ray it is called for.
+  for (std::uint32_t i = 0; i < count && has_see_through_; ++i) {
+    context.ray = i;
+    RTCRayHit ray = rtcGetRayHitFromRayHitN(reinterpret_cast<RTCRayHitN*>(&packet), kBatch, i);
+    rtcIntersect1(see_through_, &context.base, &ray);
   }
 }
 
