@@ -166,9 +166,9 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
     }
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   }
-  // One by one, up to the opaque hit at tfar. Where the processor's vectors are too short for a packet, Embree
-  // traces it in parts, loses the ids of the rays, and also traces those that are not valid: the filter could
-  // not tell which ray it is called for.
+  // One by one, up to the opaque hit at tfar. Where the processor's vectors are too short for a packet,
+  // Embree traces it in parts, loses the ids of the rays, and also traces those that are not valid: the
+  // filter could not tell which ray it is called for.
   for (std::uint32_t i = 0; i < count && has_see_through_; ++i) {
     context.ray = i;
     RTCRayHit ray = rtcGetRayHitFromRayHitN(reinterpret_cast<RTCRayHitN*>(&packet), kBatch, i);
