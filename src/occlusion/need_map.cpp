@@ -31,44 +31,21 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::int32_t kSquare = NeedMap::kSize;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// A lane for each pixel of a row of a square, or of a part of it.
-using Pixels = hn::CappedTag<float, kSquare>;
-inline constexpr Pixels kPixels;
 // A lane for each square of a row.
-using Squares = hn::CappedTag<float, NeedMap::kVector>;
+using Squares = hn::CappedTag<float, SquareDepths::kVector>;
 inline constexpr Squares kSquares;
 
-// The least value of the target in a square, from pixel (x, y0) on, in the rows before y1.
-HWY_INLINE float leastOf(const DepthTarget& target, std::int32_t x, std::int32_t y0, std::int32_t y1) {
-  auto least = hn::Set(kPixels, kInfinite);
-  for (std::int32_t part = 0; part < kSquare; part += static_cast<std::int32_t>(hn::Lanes(kPixels))) {
-    const float* pixels =
-        target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y0) + x + part;
-    auto column = hn::Set(kPixels, kInfinite);
-    for (std::int32_t y = y0; y < y1; ++y, pixels += target.stride) {
-      column = hn::Min(column, hn::LoadU(kPixels, pixels));
-    }
-    const auto valid = hn::FirstN(
-        kPixels, static_cast<std::size_t>(std::max(static_cast<std::int32_t>(target.width) - x - part, 0)));
-    least = hn::IfThenElse(valid, hn::Min(least, column), least);
-  }
-  return hn::GetLane(hn::MinOfLanes(kPixels, least));
-}
-
-// Sets `open`, see NeedMap, in the squares of a row from the first to the last column. What is infinite stays
+// Sets `open`, see NeedMap, in so many squares of a row, up to the end of a vector. What is infinite stays
 // so.
-void lookAtSquares(const DepthTarget& target, std::int32_t row, std::int32_t first, std::int32_t last,
-                   const float* nearest, float* open) {
-  const std::int32_t y0 = row * kSquare,
-                     y1 = std::min(y0 + kSquare, static_cast<std::int32_t>(target.height));
-  for (std::int32_t column = first; column <= last; ++column) {
-    if (open[column] < kInfinite) {
-      const float least = leastOf(target, column * kSquare, y0, y1);
-      open[column] = least < nearest[column] ? std::max(open[column], least) : kInfinite;
-    }
+void lookAtRow(const float* least, const float* nearest, std::size_t count, float* open) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(kSquares)) {
+    const auto farthest_pixel = hn::LoadU(kSquares, least + i);
+    const auto hides_all = hn::Ge(farthest_pixel, hn::LoadU(kSquares, nearest + i));
+    hn::StoreU(hn::IfThenElse(hides_all, hn::Set(kSquares, kInfinite),
+                              hn::Max(hn::LoadU(kSquares, open + i), farthest_pixel)),
+               kSquares, open + i);
   }
 }
 
@@ -98,17 +75,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline::occlusion {
 namespace {
-HWY_EXPORT(lookAtSquares);
+HWY_EXPORT(lookAtRow);
 HWY_EXPORT(openBehind);
-
 }  // namespace
 
 void NeedMap::clear(const DepthTarget& target) {
-  const auto squares = [](std::uint32_t pixels) {
-    return (static_cast<std::int32_t>(pixels) + kSize - 1) / kSize;
-  };
-  stride_ = squares(target.width) + kVector;
-  const std::size_t count = at(squares(target.height));
+  rows_ = squaresIn(target.height);
+  stride_ = squaresIn(target.width) + SquareDepths::kVector;
+  const std::size_t count = at(rows_);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   farthest_.assign(count, kInfinity);
   nearest_.assign(count, -kInfinity);
@@ -127,10 +101,10 @@ void NeedMap::add(const PixelRectangle& rectangle, float nearest) {
   }
 }
 
-void NeedMap::look(const DepthTarget& target, const PixelRectangle& rectangle) {
-  const std::int32_t first = rectangle.x0 / kSize, last = (rectangle.x1 - 1) / kSize;
-  for (std::int32_t row = rectangle.y0 / kSize; row * kSize < rectangle.y1; ++row) {
-    HWY_DYNAMIC_DISPATCH(lookAtSquares)(target, row, first, last, nearestOf(row), open_.data() + at(row));
+void NeedMap::look(const SquareDepths& target) {
+  const auto columns = static_cast<std::size_t>(stride_ - SquareDepths::kVector);
+  for (std::int32_t row = 0; row < rows_; ++row) {
+    HWY_DYNAMIC_DISPATCH(lookAtRow)(target.ofRow(row), nearestOf(row), columns, open_.data() + at(row));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/occlusion/depth_target.h"
+#include "src/occlusion/square_depths.h"
 
 namespace sightline::occlusion {
 
@@ -13,16 +14,14 @@ namespace sightline::occlusion {
 // that there is of them is hidden, is of no use. All rectangles lie within the target.
 class NeedMap {
  public:
-  static constexpr std::int32_t kSize = 8;     // pixels along each side of a square
-  static constexpr std::int32_t kVector = 16;  // squares that are looked at together, at most
+  static constexpr std::int32_t kSize = SquareDepths::kSize;
 
   // Needs nothing.
   void clear(const DepthTarget& target);
   // A box that lies in these pixels and is nowhere nearer than this reciprocal depth is to be hidden.
   void add(const PixelRectangle& rectangle, float nearest);
-  // Looks what the target hides by now in the squares with pixels of a rectangle. Call this before pixels(),
-  // and where the target has come nearer since.
-  void look(const DepthTarget& target, const PixelRectangle& rectangle);
+  // Looks what the target hides by now. Call this before pixels(), and after the target has come nearer.
+  void look(const SquareDepths& target);
 
   // An upper bound, but for rounding, of the pixels of a rectangle in which a surface with these depths may
   // hide something of a box.
@@ -43,6 +42,7 @@ class NeedMap {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(stride_);
   }
 
+  std::int32_t rows_ = 0;
   std::int32_t stride_ = 0;  // squares of a row, and room for a vector
   std::vector<float> farthest_, nearest_;
   // A surface is of use in a square only where it is nearer than this: than the farthest box and the

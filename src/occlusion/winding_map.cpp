@@ -4,82 +4,8 @@
 #include <cstdlib>
 #include <limits>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "src/occlusion/winding_map.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion {
-namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
-
-// A lane for each pixel. Vectors begin at multiples of their length, so that they end within the stride.
-using Pixels = hn::CappedTag<float, 16>;
-inline constexpr Pixels kPixels;
-
-// The least value of a rectangle of the target's pixels.
-float leastOf(const DepthTarget& target, const PixelRectangle& r) {
-  const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels));
-  const auto infinite = hn::Set(kPixels, std::numeric_limits<float>::infinity());
-  auto least = infinite;
-  for (std::int32_t x = r.x0 / lanes * lanes; x < r.x1; x += lanes) {
-    const float* pixels = target.reciprocal_depth + x;
-    auto column = infinite;
-    for (std::int32_t y = r.y0; y < r.y1; ++y) {
-      column = hn::Min(
-          column, hn::LoadU(kPixels, pixels + std::size_t{target.stride} * static_cast<std::uint32_t>(y)));
-    }
-    const auto before = hn::FirstN(kPixels, static_cast<std::size_t>(std::max(r.x0 - x, 0))),
-               to = hn::FirstN(kPixels, static_cast<std::size_t>(std::min(r.x1 - x, lanes)));
-    least = hn::IfThenElse(hn::AndNot(before, to), hn::Min(least, column), least);
-  }
-  return hn::GetLane(hn::MinOfLanes(kPixels, least));
-}
-
-// Whether all pixels of a rectangle have a greater value than this. leasts, stale: by tile, stride for each
-// row of them.
-bool allNearer(const DepthTarget& target, float* leasts, bool* stale, std::int32_t stride,
-               const PixelRectangle& r, float than) {
-  const auto width = static_cast<std::int32_t>(target.width),
-             height = static_cast<std::int32_t>(target.height);
-  for (std::int32_t tile_y = r.y0 / kHigh; tile_y * kHigh < r.y1; ++tile_y) {
-    for (std::int32_t tile_x = r.x0 / kWide; tile_x * kWide < r.x1; ++tile_x) {
-      const std::ptrdiff_t tile = std::ptrdiff_t{stride} * tile_y + tile_x;
-      if (leasts[tile] > than) {
-        continue;
-      }
-      const PixelRectangle whole{tile_x * kWide, tile_y * kHigh, std::min(tile_x * kWide + kWide, width),
-                                 std::min(tile_y * kHigh + kHigh, height)};
-      if (stale[tile]) {
-        stale[tile] = false;
-        leasts[tile] = leastOf(target, whole);
-        if (leasts[tile] > than) {
-          continue;
-        }
-      }
-      const PixelRectangle part{std::max(whole.x0, r.x0), std::max(whole.y0, r.y0), std::min(whole.x1, r.x1),
-                                std::min(whole.y1, r.y1)};
-      if (part.area() == whole.area() || !(leastOf(target, part) > than)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace sightline::occlusion {
 namespace {
-
-HWY_EXPORT(allNearer);
 
 constexpr std::uint64_t kLargestSum = 1u << 30;  // of edges' values in a group: see WindingTile::carry
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -93,26 +19,19 @@ void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
     return (static_cast<std::int32_t>(pixels) + size - 1) / size;
   };
   const std::int32_t columns = wholes(target.width, kTileWidth), rows = wholes(target.height, kTileHeight);
-  const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   if (columns != columns_ || rows != rows_) {
     columns_ = columns;
     rows_ = rows;
-    tiles_.assign(tiles, {});
-    stale_ = std::make_unique<bool[]>(tiles);
+    tiles_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), {});
     extents_.assign(static_cast<std::size_t>(rows), {});
     runs_.assign(static_cast<std::size_t>(rows), {});
     far_stride_ = static_cast<std::uint32_t>(columns * FarDepths::kAcross + FarDepths::kSpare);
     far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
   }
-  least_.assign(tiles, -kInfinity);
-  std::fill_n(stale_.get(), tiles, needs_ == nullptr);
+  farthest_.look(target);
   if (needs_ != nullptr) {
-    needs_->look(target_, {0, 0, buffer().width, buffer().height});
+    needs_->look(farthest_);
   }
-}
-
-bool WindingMap::hides(const PixelRectangle& rectangle, float nearest) {
-  return HWY_DYNAMIC_DISPATCH(allNearer)(target_, least_.data(), stale_.get(), columns_, rectangle, nearest);
 }
 
 WindingMap::Plan WindingMap::planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const {
@@ -156,26 +75,7 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
     }
   }
   if (needs_ != nullptr) {
-    lookAgain();
-  }
-}
-
-// Looks at the tiles that have changed, run by run.
-void WindingMap::lookAgain() {
-  for (std::int32_t y = 0; y < rows_; ++y) {
-    bool* changed = stale_.get() + static_cast<std::ptrdiff_t>(columns_) * y;
-    for (bool *first = changed, *end = changed + columns_; first != end;) {
-      first = std::find(first, end, true);
-      bool* after = std::find(first, end, false);
-      if (first != after) {
-        std::fill(first, after, false);
-        const auto x0 = static_cast<std::int32_t>(first - changed),
-                   x1 = static_cast<std::int32_t>(after - changed);
-        needs_->look(target_, {x0 * kTileWidth, y * kTileHeight, std::min(x1 * kTileWidth, buffer().width),
-                               std::min((y + 1) * kTileHeight, buffer().height)});
-      }
-      first = after;
-    }
+    needs_->look(farthest_);
   }
 }
 
@@ -196,7 +96,7 @@ WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
   const GroupCover cover{.runs = plan.in_runs ? runs_.data() : nullptr,
                          .tiles = tiles_.data(),
                          .extents = extents_.data(),
-                         .stale = stale_.get(),
+                         .farthest = &farthest_,
                          .columns = columns_,
                          .range = tiles,
                          .target = target_,
@@ -212,4 +112,3 @@ WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
 }
 
 }  // namespace sightline::occlusion
-#endif

@@ -4,7 +4,6 @@
 // "Surfaces".
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "src/occlusion/boundary_runs.h"
 #include "src/occlusion/depth_target.h"
 #include "src/occlusion/need_map.h"
+#include "src/occlusion/square_depths.h"
 #include "src/occlusion/winding_resolve.h"
 #include "src/occlusion/winding_tiles.h"
 
@@ -36,10 +36,12 @@ class WindingMap {
   }
 
   // Whether all of a rectangle of the target is nearer than this reciprocal depth.
-  bool hides(const PixelRectangle& rectangle, float nearest);
+  bool hides(const PixelRectangle& rectangle, float nearest) const {
+    return farthest_.allNearer(target_, rectangle, nearest);
+  }
   // In how many pixels of a rectangle of the target a surface that is nowhere nearer than this reciprocal
   // depth may gain something; or more.
-  std::uint32_t wanted(const PixelRectangle& rectangle, float nearest) {
+  std::uint32_t wanted(const PixelRectangle& rectangle, float nearest) const {
     if (needs_ != nullptr) {
       return needs_->pixels(rectangle, nearest);
     }
@@ -66,7 +68,6 @@ class WindingMap {
     bool known = false;  // numbers are large enough for its windings
   };
 
-  void lookAgain();
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;
   // The rows of tiles from first_row to last_row of a group.
   WindingGain drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
@@ -80,8 +81,7 @@ class WindingMap {
   std::vector<TileRowRuns> runs_;        // by row of tiles
   std::uint32_t far_stride_ = 0;
   std::vector<float> far_;          // see FarDepths; all infinite between groups
-  std::vector<float> least_;        // by tile: of the target's values, or less
-  std::unique_ptr<bool[]> stale_;   // by tile: it may be less; with needs, it has to be looked at again
+  SquareDepths farthest_;           // of the target
   std::vector<Plan> plans_;         // of the groups that are drawn
   std::vector<WindingGain> gains_;  // by group and first row of the tiles that a thread draws
 };

@@ -1,7 +1,6 @@
 #include "src/occlusion/winding_resolve.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -15,13 +14,25 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
-constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
+constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight, kSquare = SquareDepths::kSize;
+static_assert(kHigh == kSquare && kWide % kSquare == 0);
 constexpr float kGain = 1.125f;  // a pixel counts as changed if it becomes nearer by this factor
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 // A lane for each pixel of a row of a tile, or of a part of it.
 using Pixels = hn::CappedTag<float, 16>;
 using PixelsV = hn::Vec<Pixels>;
 inline constexpr Pixels kPixels;
+static_assert(hn::MaxLanes(kPixels) <= 2 * kSquare);
+
+// In each lane the value of the square that the pixel is in. squares: that of the first pixel, and the next.
+HWY_INLINE PixelsV ofSquares(const float* squares) {
+  auto values = hn::Set(kPixels, squares[0]);
+  if constexpr (hn::MaxLanes(kPixels) > kSquare) {
+    values = hn::IfThenElse(hn::FirstN(kPixels, kSquare), values, hn::Set(kPixels, squares[1]));
+  }
+  return values;
+}
 
 // Pixels of the target in a row of tiles.
 struct PixelRows {
@@ -30,11 +41,12 @@ struct PixelRows {
                          std::size_t{target.stride} * static_cast<std::uint32_t>(tile_row * kHigh)),
         stride(target.stride),
         width(drawnWidth(static_cast<std::int32_t>(target.width))),
+        valid(static_cast<std::int32_t>(target.width)),
         rows(std::min(kHigh, static_cast<std::int32_t>(target.height) - tile_row * kHigh)) {}
 
   float* reciprocal_depth;  // of the first pixel of the lowest row
   std::uint32_t stride;
-  std::int32_t width, rows;
+  std::int32_t width, valid, rows;  // valid: those of a row that have a meaning
 };
 
 // The depths of a plane in a row of tiles.
@@ -52,6 +64,11 @@ class PlaneDepths {
   // What ofRow() takes for the pixels from x on, in row y of the tiles and those above it.
   HWY_INLINE PixelsV ofColumn(std::int32_t x, std::int32_t) const {
     return hn::Mul(hn::Iota(kPixels, static_cast<float>(x)), hn::Set(kPixels, depth_.along_x));
+  }
+  // The nearest of each column of pixels from x on.
+  HWY_INLINE PixelsV nearest(std::int32_t x) const {
+    const auto column = ofColumn(x, 0);
+    return hn::Max(ofRow(column, 0), ofRow(column, kHigh - 1));
   }
   // Their depths in row y.
   HWY_INLINE PixelsV ofRow(PixelsV column, std::int32_t y) const {
@@ -85,6 +102,10 @@ class BlockDepths {
     const auto most = hn::Set(kPixels, std::numeric_limits<float>::max());
     return hn::IfThenElse(hn::Le(depth, most), depth, hn::Neg(most));
   }
+  HWY_INLINE PixelsV nearest(std::int32_t x) const {
+    static_assert(FarDepths::kUp == 2);
+    return hn::Max(ofColumn(x, 0), ofColumn(x, kRows));
+  }
   HWY_INLINE PixelsV ofRow(PixelsV column, std::int32_t) const { return column; }
 
  private:
@@ -96,7 +117,6 @@ class BlockDepths {
 class Gains {
  public:
   HWY_INLINE Gains(const NeedMap* needs, std::int32_t tile_row) {
-    static_assert(kHigh == NeedMap::kSize);
     if (needs != nullptr) {
       farthest_ = needs->farthestOf(tile_row);
       nearest_ = needs->nearestOf(tile_row);
@@ -104,67 +124,93 @@ class Gains {
   }
   // What the depths of the pixels from x on must be before, and the largest old ones that count.
   HWY_INLINE PixelsV farthest(std::int32_t x) const {
-    return farthest_ != nullptr ? ofSquares(farthest_, x) : hn::Set(kPixels, -kInfinite);
+    return farthest_ != nullptr ? ofSquares(farthest_ + x / kSquare) : hn::Set(kPixels, -kInfinite);
   }
   HWY_INLINE PixelsV nearest(std::int32_t x) const {
-    return nearest_ != nullptr ? ofSquares(nearest_, x) : hn::Set(kPixels, kInfinite);
+    return nearest_ != nullptr ? ofSquares(nearest_ + x / kSquare) : hn::Set(kPixels, kInfinite);
   }
 
  private:
-  static constexpr float kInfinite = std::numeric_limits<float>::infinity();
-
-  HWY_INLINE static PixelsV ofSquares(const float* squares, std::int32_t x) {
-    constexpr std::int32_t kSquare = NeedMap::kSize;
-    static_assert(hn::MaxLanes(kPixels) <= 2 * kSquare);
-    const float* square = squares + x / kSquare;
-    auto values = hn::Set(kPixels, square[0]);
-    if constexpr (hn::MaxLanes(kPixels) > kSquare) {
-      values = hn::IfThenElse(hn::FirstN(kPixels, kSquare), values, hn::Set(kPixels, square[1]));
-    }
-    return values;
-  }
-
   const float *farthest_ = nullptr, *nearest_ = nullptr;
 };
 
-// Sets the pixels of a tile that have bits in covered[] to a depth where that is nearer. Returns how many of
-// them become nearer by kGain, and gain by that. stale: set if there are such pixels.
+// Sets the values of one or two squares to the least ones of their lanes.
+HWY_INLINE void setSquares(PixelsV lanes, float* squares) {
+  if constexpr (hn::MaxLanes(kPixels) > kSquare) {
+    const auto first = hn::FirstN(kPixels, kSquare);
+    const auto infinite = hn::Set(kPixels, kInfinite);
+    squares[1] = hn::GetLane(hn::MinOfLanes(kPixels, hn::IfThenElse(first, infinite, lanes)));
+    lanes = hn::IfThenElse(first, lanes, infinite);
+  }
+  squares[0] = hn::GetLane(hn::MinOfLanes(kPixels, lanes));
+}
+
+// Sets the pixels of a vector of columns, from x on, that have bits in covered[] to a depth where that is
+// nearer. Adds to each lane of `gained` how many become nearer by kGain, and gain by that. Returns the least
+// depths that there are by now.
+template <typename Depths, typename Counts>
+HWY_INLINE PixelsV gainColumns(const PixelRows& pixels, std::int32_t x, const std::uint32_t* covered,
+                               const Depths& depths, const Gains& gain, Counts& gained) {
+  const hn::RebindToUnsigned<Pixels> bits;
+  const hn::RebindToSigned<Pixels> numbers;
+  const auto first_bit = static_cast<std::uint32_t>(x % kWide);
+  const auto lane_bits = hn::Shl(hn::Set(bits, 1u), hn::Add(hn::Iota(bits, 0u), hn::Set(bits, first_bit)));
+  const auto farthest = gain.farthest(x), nearest = gain.nearest(x);
+  auto least = hn::Set(kPixels, kInfinite);
+  float* out = pixels.reciprocal_depth + x;
+  for (std::int32_t y = 0; y < pixels.rows;) {
+    const auto column = depths.ofColumn(x, y);
+    for (const std::int32_t end = std::min(pixels.rows, y + Depths::kRows); y < end;
+         ++y, out += pixels.stride) {
+      const auto mask = hn::RebindMask(kPixels, hn::TestBit(hn::Set(bits, covered[y]), lane_bits));
+      const auto old = hn::LoadU(kPixels, out), depth = depths.ofRow(column, y);
+      const auto nearer = hn::And(mask, hn::Gt(depth, old));
+      const auto now = hn::IfThenElse(nearer, depth, old);
+      hn::StoreU(now, kPixels, out);
+      least = hn::Min(least, now);
+      const auto needed = hn::And(hn::Gt(depth, hn::Max(farthest, hn::Mul(old, hn::Set(kPixels, kGain)))),
+                                  hn::Lt(old, nearest));
+      gained = hn::Sub(gained, hn::VecFromMask(numbers, hn::RebindMask(numbers, hn::And(nearer, needed))));
+    }
+  }
+  const auto valid = static_cast<std::size_t>(std::max(pixels.valid - x, 0));
+  return hn::IfThenElse(hn::FirstN(kPixels, valid), least, hn::Set(kPixels, kInfinite));
+}
+
+// Does that in a tile, but for squares that are nearer by now than any of these depths. least: of the tile's
+// squares. Returns how many pixels gain.
 template <typename Depths>
 HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, const std::uint32_t* covered,
-                                  const Depths& depths, const Gains& gain, bool& stale) {
-  const hn::RebindToUnsigned<Pixels> bits;
-  const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels));
-  const std::uint32_t all_lanes = ~0u >> (kWide - lanes);
+                                  const Depths& depths, const Gains& gain, float* least) {
+  const hn::RebindToSigned<Pixels> numbers;
+  const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels)), step = std::max(lanes, kSquare);
+  const std::uint32_t all = ~0u >> (kWide - step);
   const std::int32_t width = std::min(pixels.width - tile * kWide, kWide);
   std::uint32_t columns = 0;  // that have covered pixels
   for (std::int32_t y = 0; y < kHigh; ++y) {
     columns |= covered[y];
   }
-  stale = stale || columns != 0;
-  std::size_t nearer = 0;
-  for (std::int32_t x = 0; x < width; x += lanes) {
-    if ((columns >> x & all_lanes) == 0) {
+  auto gained = hn::Zero(numbers);
+  for (std::int32_t in_tile = 0; in_tile < width; in_tile += step) {
+    if ((columns >> in_tile & all) == 0) {
       continue;
     }
-    const auto lane_bits =
-        hn::Shl(hn::Set(bits, 1u), hn::Add(hn::Iota(bits, 0u), hn::Set(bits, static_cast<std::uint32_t>(x))));
-    float* out = pixels.reciprocal_depth + tile * kWide + x;
-    const auto farthest = gain.farthest(tile * kWide + x), nearest = gain.nearest(tile * kWide + x);
-    for (std::int32_t y = 0; y < pixels.rows;) {
-      const auto column = depths.ofColumn(tile * kWide + x, y);
-      for (const std::int32_t end = std::min(pixels.rows, y + Depths::kRows); y < end;
-           ++y, out += pixels.stride) {
-        const auto mask = hn::RebindMask(kPixels, hn::TestBit(hn::Set(bits, covered[y]), lane_bits));
-        const auto old = hn::LoadU(kPixels, out), depth = depths.ofRow(column, y);
-        const auto gains = hn::And(mask, hn::Gt(depth, old));
-        hn::StoreU(hn::IfThenElse(gains, depth, old), kPixels, out);
-        const auto needed = hn::And(hn::Gt(depth, hn::Max(farthest, hn::Mul(old, hn::Set(kPixels, kGain)))),
-                                    hn::Lt(old, nearest));
-        nearer += hn::CountTrue(kPixels, hn::And(gains, needed));
-      }
+    float* squares = least + in_tile / kSquare;
+    const std::int32_t first = tile * kWide + in_tile;
+    bool nearer = false;
+    for (std::int32_t x = first; x < first + step; x += lanes) {
+      nearer = nearer || !hn::AllFalse(kPixels, hn::Gt(depths.nearest(x), ofSquares(squares)));
     }
+    if (!nearer) {
+      continue;
+    }
+    auto now = hn::Set(kPixels, kInfinite);
+    for (std::int32_t x = first; x < first + step; x += lanes) {
+      now = hn::Min(now, gainColumns(pixels, x, covered, depths, gain, gained));
+    }
+    setSquares(now, squares);
   }
-  return static_cast<std::uint32_t>(nearer);
+  return static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(numbers, gained)));
 }
 
 // Clears a tile, and leaves in its first plane the pixels in which the winding is surely positive. outside[]:
@@ -221,14 +267,14 @@ HWY_INLINE std::int32_t coverRow(WindingTile* tiles, const TileExtent& extent, s
 template <typename Depths>
 HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
                              const Depths& depths, const Gains& gains, WindingGain& gain) {
-  const std::ptrdiff_t first_tile = std::ptrdiff_t{group.columns} * row;
-  WindingTile* tiles = group.tiles + first_tile;
+  WindingTile* tiles = group.tiles + std::ptrdiff_t{group.columns} * row;
   const TileExtent& extent = group.extents[row];
+  float* least = group.farthest->ofRow(row);
   const std::int32_t last = coverRow(tiles, extent, group.range.last_column, pixels.width);
   for (std::int32_t x = extent.first; x <= last; ++x) {
     ++gain.tiles;
     std::uint32_t* covered = tiles[x].planes[0];
-    gain.nearer += gainTile(pixels, x, covered, depths, gains, group.stale[first_tile + x]);
+    gain.nearer += gainTile(pixels, x, covered, depths, gains, least + x * (kWide / kSquare));
     for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kBits))) {
       hn::Store(hn::Zero(kBits), kBits, covered + lane);
     }
@@ -240,6 +286,7 @@ template <typename Depths>
 HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
                             const Depths& depths, const Gains& gains, WindingGain& gain) {
   const TileRowRuns& runs = group.runs[row];
+  float* least = group.farthest->ofRow(row);
   HWY_ALIGN std::uint32_t covered[kHigh];
   for (std::int32_t x = runs.extent.first; x <= runs.extent.last; ++x) {
     ++gain.tiles;
@@ -249,8 +296,7 @@ HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const Pix
                             hn::Sub(hn::Load(kNumbers, runs.end + lane), origin)),
                 kBits, covered + lane);
     }
-    gain.nearer +=
-        gainTile(pixels, x, covered, depths, gains, group.stale[std::ptrdiff_t{group.columns} * row + x]);
+    gain.nearer += gainTile(pixels, x, covered, depths, gains, least + x * (kWide / kSquare));
   }
 }
 

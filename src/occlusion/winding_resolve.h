@@ -8,6 +8,7 @@
 #include "src/occlusion/depth_target.h"
 #include "src/occlusion/far_depths.h"
 #include "src/occlusion/need_map.h"
+#include "src/occlusion/square_depths.h"
 #include "src/occlusion/winding_tiles.h"
 
 namespace sightline::occlusion {
@@ -17,7 +18,7 @@ struct GroupCover {
   const TileRowRuns* runs = nullptr;    // by row of tiles, of a group that is drawn in runs; else null
   WindingTile* tiles = nullptr;         // of one that is not; cleared
   const TileExtent* extents = nullptr;  // by row of tiles, of one that is not
-  bool* stale = nullptr;                // by tile: set where depths may have changed
+  SquareDepths* farthest = nullptr;     // of the target; kept up to date
   std::int32_t columns = 0;             // tiles in a row of the target
   TileRange range;                      // those of the group
   DepthTarget target;

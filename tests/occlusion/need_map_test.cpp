@@ -38,12 +38,21 @@ struct NeedBed {
       map.add(box.rectangle, box.nearest);
     }
   }
-  // Looks at all of the target, at some of it more than once.
-  void lookInPieces(test::Random& random) {
-    for (std::size_t i = random.below(3); i > 0; --i) {
-      map.look(target(), randomRectangle(random));
+  // Looks at the target once, or twice where it was farther before.
+  void look(test::Random& random) {
+    SquareDepths depths;
+    if (random.below(2) == 0) {
+      std::vector<float> farther = values;
+      for (float& value : farther) {
+        value -= static_cast<float>(random.below(3));
+      }
+      DepthTarget before = target();
+      before.reciprocal_depth = farther.data();
+      depths.look(before);
+      map.look(depths);
     }
-    map.look(target(), {0, 0, width, height});
+    depths.look(target());
+    map.look(depths);
   }
 
   PixelRectangle randomRectangle(test::Random& random) const {
@@ -119,7 +128,7 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
       for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
         bed.setNeeds();
-        bed.lookInPieces(random);
+        bed.look(random);
         EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
         EXPECT_EQ(bed.map.pixels(rectangle, sloping), of_sloping) << n << ", " << hwy::TargetName(target);
         hwy::SetSupportedTargetsForTest(0);
@@ -138,9 +147,11 @@ TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {
   std::vector<float> values(std::size_t{48} * 32, -1.0f);
   const DepthTarget target{values.data(), 40, 32, 48};
   NeedMap map;
+  SquareDepths depths;
   map.clear(target);
   map.add({8, 8, 16, 16}, 2.0f);
-  map.look(target, {0, 0, 40, 32});
+  depths.look(target);
+  map.look(depths);
   EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u);
   EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.0f), 0u) << "no nearer than the box";
   EXPECT_EQ(map.pixels({0, 0, 8, 32}, 2.5f), 0u) << "to the left of it";
@@ -149,12 +160,14 @@ TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {
   for (std::size_t y = 8; y < 16; ++y) {
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(48 * y + 8), 8, 2.0f);
   }
-  map.look(target, {0, 0, 40, 32});
+  depths.look(target);
+  map.look(depths);
   EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 0u) << "it is hidden";
   values[48 * 12 + 11] = 1.9f;
   map.clear(target);
   map.add({8, 8, 16, 16}, 2.0f);
-  map.look(target, {0, 0, 40, 32});
+  depths.look(target);
+  map.look(depths);
   EXPECT_EQ(map.pixels({0, 0, 40, 32}, 2.5f), 64u) << "but for one pixel";
 }
 

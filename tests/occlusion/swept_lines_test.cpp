@@ -302,7 +302,6 @@ TEST(SweptEdges, ThePixelsThatAreNotCoveredAreThoseThatTheEdgeMayTouch) {
   const float open = -std::numeric_limits<float>::max();
   std::vector<float> values(std::size_t{kStride} * kHeight);
   WindingMap map;
-  map.begin({values.data(), kWidth, kHeight, kStride});
   // Around the buffer, and once more to its left: two edges that begin the group at one height, so that it is
   // not drawn in runs, which may leave more open.
   const auto rectangle = [&](double left, double right) {
@@ -344,6 +343,7 @@ TEST(SweptEdges, ThePixelsThatAreNotCoveredAreThoseThatTheEdgeMayTouch) {
     const std::array groups{WindingGroup{all, chains, depths, true}};
     std::array<WindingGain, 1> gains;
     std::ranges::fill(values, open);
+    map.begin({values.data(), kWidth, kHeight, kStride});
     map.draw(groups, edges, gains);
     // Far beside the buffer an edge may be drawn into tiles that it does not touch.
     const double at_end = from.x + (kEndY - from.y) * edge.slope, at_begin = from.x - from.y * edge.slope;

@@ -59,10 +59,9 @@ void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBo
 // What one closed polygon covers in a map.
 class PolygonCover {
  public:
-  PolygonCover() { map_.begin({values_.data(), kMapWidth, kMapHeight, kMapStride}); }
-
   const std::vector<float>& of(std::span<const GridPoint> polygon) {
     std::fill(values_.begin(), values_.end(), kNoDepth);
+    map_.begin({values_.data(), kMapWidth, kMapHeight, kMapStride});
     drawGroup(map_, std::array{Polygon{{polygon.begin(), polygon.end()}}}, {.floor = 1.0f});
     for (std::uint32_t row = 0; row < kMapHeight; ++row) {
       std::fill_n(values_.begin() + kMapStride * row + kMapWidth, kMapStride - kMapWidth, kNoDepth);
@@ -442,12 +441,13 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
         }
       }
       WindingMap map;
-      map.begin(target, &needs);
+      map.begin(target);
       std::vector<BoundaryEdge> edges;
       const std::array chains{addChain(polygon[0].points, 1, map.buffer(), edges)};
       const std::array depths{PartDepth{all, {.at_origin = depth, .floor = depth}}};
       for (const bool flat : {false, true}) {
         values = old;
+        map.begin(target, &needs);
         std::array<WindingGain, 1> gains;
         map.draw(std::array{WindingGroup{all, chains, depths, flat}}, edges, gains);
         EXPECT_EQ(gains[0].nearer, expected) << n << ", " << flat << ", " << hwy::TargetName(instructions);
@@ -480,6 +480,49 @@ Polygon convexPolygon(std::mt19937& random, double width, double height) {
   }
   polygon.points.push_back(polygon.points.front());
   return polygon;
+}
+
+// However many groups have been drawn, and whatever their depths are.
+TEST(WindingMap, HidesARectangleWhereAllOfItsPixelsAreNearer) {
+  std::mt19937 random(37);
+  const auto number = test::numbersFrom<float>(random);
+  std::size_t hidden = 0, not_hidden = 0;
+  for (int n = 0; n < 250; ++n) {
+    const auto width = static_cast<std::uint32_t>(number(1.0f, 120.0f)),
+               height = static_cast<std::uint32_t>(number(1.0f, 40.0f));
+    SmallMap map(width, height);
+    const std::vector<std::int64_t> sets = hwy::SupportedAndGeneratedTargets();
+    for (std::size_t group = 0; group < 12; ++group) {
+      hwy::SetSupportedTargetsForTest(sets[group % sets.size()]);
+      const std::array polygon{convexPolygon(random, width, height)};
+      std::vector<BoundaryEdge> edges;
+      const std::array chains{addChain(polygon[0].points, 1, map.map().buffer(), edges)};
+      const PixelRectangle all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+      const DepthBound depth{number(-0.05f, 0.05f), number(-0.05f, 0.05f), number(0.0f, 4.0f), 0.1f};
+      const std::array depths{PartDepth{all, depth}};
+      std::array<WindingGain, 1> gains;
+      map.map().draw(std::array{WindingGroup{all, chains, depths, random() % 2 == 0}}, edges, gains);
+      for (int k = 0; k < 20; ++k) {
+        const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
+        const std::uint32_t x0 = below(width), y0 = below(height), x1 = x0 + 1 + below(width - x0),
+                            y1 = y0 + 1 + below(height - y0);
+        float least = std::numeric_limits<float>::infinity();
+        for (std::uint32_t y = y0; y < y1; ++y) {
+          for (std::uint32_t x = x0; x < x1; ++x) {
+            least = std::min(least, map.at(x, y));
+          }
+        }
+        const PixelRectangle r{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0),
+                               static_cast<std::int32_t>(x1), static_cast<std::int32_t>(y1)};
+        const float than = k % 2 == 0 ? least : std::nextafter(least, kNoDepth);
+        EXPECT_EQ(map.map().hides(r, than), least > than) << n << ", group " << group;
+        (least > than ? hidden : not_hidden) += 1;
+      }
+      hwy::SetSupportedTargetsForTest(0);
+    }
+  }
+  EXPECT_GT(hidden, 5000u);
+  EXPECT_GT(not_hidden, 5000u);
 }
 
 TEST(WindingMap, CoversTheSameOfConvexPolygonsInRunsAndInTiles) {
