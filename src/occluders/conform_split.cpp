@@ -11,7 +11,7 @@ using geometry::ExactPoint;
 
 namespace {
 
-constexpr std::size_t kMost =
+constexpr std::size_t kMostContacts =
     65536;  // contacts of a triangle with segments among them, and crossings of these
 
 }  // namespace
@@ -63,7 +63,7 @@ void TriangleSplit::split(const ConformScene& scene, std::uint32_t triangle,
 
 // Finds the points and segments of a triangle; false if it is overfull.
 bool TriangleSplit::arrange(std::span<const Contact> contacts) {
-  if (contacts.size() > kMost) {
+  if (contacts.size() > kMostContacts) {
     const auto segment = [](const Contact& contact) { return contact.kind != Contact::Kind::kPoint; };
     if (std::any_of(contacts.begin(), contacts.end(), segment)) {
       return false;
@@ -204,7 +204,7 @@ bool TriangleSplit::crossSegments() {
           turn(b.low, b.high, a.low) * turn(b.low, b.high, a.high) >= 0) {
         continue;
       }
-      if (crossings_.size() >= 2 * kMost) {
+      if (crossings_.size() >= 2 * kMostContacts) {
         return false;
       }
       crossings_.push_back({i, static_cast<std::uint32_t>(names_.size())});

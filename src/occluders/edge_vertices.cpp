@@ -247,9 +247,9 @@ class EdgeSearch {
     }
     // Whole numbers of less than 52 bits, their differences and their products with parts of an edge are
     // exact.
-    constexpr double kMost = 0x1p52;
+    constexpr double kExact = 0x1p52;
     const double scale = powerOfTwo(-exponent), from = a * scale, to = b * scale;
-    return {to - from, powerOfTwo(exponent), std::abs(from) < kMost && std::abs(to) < kMost};
+    return {to - from, powerOfTwo(exponent), std::abs(from) < kExact && std::abs(to) < kExact};
   }
 
   Steps stepsOf(const MeshEdge& edge) const {

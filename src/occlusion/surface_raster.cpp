@@ -53,12 +53,11 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 }  // namespace
 
 void SurfaceRaster::reserve(const SurfaceSet& set) {
-  const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
-  makeRoom(sums_, set.chains.size());
-  makeRoom(facings_, set.patches.size());
-  makeRoom(patch_rests_, set.patches.size());
-  makeRoom(part_rests_, set.parts.size());
-  makeRoom(place_in_useful_, set.parts.size());
+  sums_.require(set.chains.size());
+  facings_.require(set.patches.size());
+  patch_rests_.require(set.patches.size());
+  part_rests_.require(set.parts.size());
+  place_in_useful_.require(set.parts.size());
 }
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
@@ -107,9 +106,9 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
   const double moved = length(eye - eye_);
   const bool anew = set_number_ != set.number || view_number_ == kLastView || !std::isfinite(travel_ + moved);
   if (view_number_ == kLastView) {
-    std::fill(patch_rests_.begin(), patch_rests_.end(), Rest{});
-    std::fill(part_rests_.begin(), part_rests_.end(), Rest{});
-    std::fill(facings_.begin(), facings_.end(), Facing{});
+    patch_rests_.clear();
+    part_rests_.clear();
+    facings_.clear();
     view_number_ = 0;
   }
   if (step != ViewStep::kSame || anew) {
@@ -296,7 +295,7 @@ void SurfaceRaster::addTogether(std::span<const ClusterImage> clusters, std::spa
 
 void SurfaceRaster::beginGroup() {
   if (++group_ == 0) {
-    std::fill(sums_.begin(), sums_.end(), ChainSum{});
+    sums_.clear();
     group_ = 1;
   }
   Group group;
