@@ -579,6 +579,18 @@ TEST(RegionOcclusion, WhatIsLeftOutMakesNoLineClear) {
             FusedOcclusion::Answer::kClear);
 }
 
+TEST(FusedOcclusion, WhatIsCloserThanTheNearDistanceBlocksNoLine) {
+  const Panels panels = findPanels(sceneOf({block({0, -4, -4}, {0.5f, 4, 4})}).view());
+  FusedOcclusion questions(panels, 100.0);
+  const Vec3d close{-0.05, 0.3, 0.2}, farther{-0.15, 0.3, 0.2}, behind{6, 0.7, 0.4};
+  EXPECT_FALSE(questions.isClear(close, behind));
+  EXPECT_TRUE(questions.isClear(close, behind, kNoObject, 0.1));
+  EXPECT_FALSE(questions.isClear(farther, behind, kNoObject, 0.1));
+  EXPECT_TRUE(questions.isClear(farther, {0.1, 0.3, 0.2}, kNoObject, 1.0)) << "shorter than that";
+  // What blocked the last line is still too near for this one.
+  EXPECT_TRUE(questions.isClear(close, behind, kNoObject, 0.1));
+}
+
 // What is remembered of one question, such as what blocked its lines, must not decide another.
 TEST(RegionOcclusion, ALineInThePlaneOfWhatBlockedAnotherIsClearBesideIt) {
   const Panels panels = findPanels(sceneOf({block({0, 0, 0}, {1, 1, 1})}).view());

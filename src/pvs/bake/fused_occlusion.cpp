@@ -100,10 +100,16 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude, std::uint
   sheet_margin_ = 0x1p-24 * magnitude_ + panels.slack;
 }
 
-bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object) {
+bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object, double near_distance) {
   leaveOut(object);
   startQuestion();
-  return isFree(from, to);
+  return isFree(from, to, near_distance);
+}
+
+CellBox FusedOcclusion::endsIn(const CellBox& target) const {
+  const double widening = kWidening * magnitude_;
+  const Vec3d by{widening, widening, widening};
+  return {target.min - by, target.max + by};
 }
 
 Vec3d FusedOcclusion::startOf(const CellBox& region) {
@@ -112,10 +118,8 @@ Vec3d FusedOcclusion::startOf(const CellBox& region) {
 
 FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTarget& target,
                                            double near_distance, bool look_for_lines) {
-  const double widening = kWidening * magnitude_;
-  const Vec3d by{widening, widening, widening};
   region_ = region;
-  target_ = {target.box.min - by, target.box.max + by};
+  target_ = endsIn(target.box);
   near_distance_ = near_distance;
   leaveOut(target.object);
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
@@ -126,6 +130,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   }
   spoilers_.clear();
   traced_count_ = 0;
+  startQuestion();
   Answer answer = askWithout();
   if (answer != Answer::kUndecided || spoilers_.empty() || most_repeats_ == 0) {
     return answer;
@@ -137,6 +142,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
        ++repeat) {
     left_out_.insert(left_out_.end(), spoilers_.begin(), spoilers_.end());
     spoilers_.clear();
+    startRepeat();
     answer = askWithout();
   }
   // What is left out may block a line that is clear without it.
@@ -183,6 +189,25 @@ void FusedOcclusion::startQuestion() {
   }
 }
 
+void FusedOcclusion::startRepeat() {
+  components_before_.swap(components_);
+  members_before_.swap(members_);
+  startQuestion();
+  for (Component component : components_before_) {
+    const auto members = std::span(members_before_).subspan(component.first, component.count);
+    if (!component.own ||
+        std::ranges::any_of(members, [this](std::uint32_t panel) { return isLeftOut(panel); })) {
+      continue;
+    }
+    component.first = static_cast<std::uint32_t>(members_.size());
+    for (const std::uint32_t panel : members) {
+      places_[panel] = {question_, static_cast<std::uint32_t>(components_.size())};
+    }
+    members_.insert(members_.end(), members.begin(), members.end());
+    components_.push_back(component);
+  }
+}
+
 void FusedOcclusion::addSpoiler(std::uint32_t panel) {
   const std::uint32_t object = panels_.panels[panel].object;
   if (std::find(spoilers_.begin(), spoilers_.end(), object) == spoilers_.end()) {
@@ -191,7 +216,6 @@ void FusedOcclusion::addSpoiler(std::uint32_t panel) {
 }
 
 FusedOcclusion::Answer FusedOcclusion::askWithout() {
-  startQuestion();
   for (std::uint32_t end = 0; end < kEnds.size(); ++end) {
     findCrossingsTo(end);
     if (clear()) {
@@ -257,11 +281,9 @@ bool FusedOcclusion::isCrossedOften(std::uint32_t number, const Vec3d& end) {
 // meet is found for themselves.
 void FusedOcclusion::focus(Focus on, const CellBox& from, const CellBox& to) {
   InFocus& focus = foci_[on];
-  // Lines end in boxes that are widened.
-  const double wide = kWidening * magnitude_;
-  const Vec3d by{wide, wide, wide};
-  focus.from = {from.min - by, from.max + by};
-  focus.to = {to.min - by, to.max + by};
+  // The box from which lines begin is the end of others.
+  focus.from = endsIn(from);
+  focus.to = endsIn(to);
   const Cone lines(focus.from, focus.to, error_, magnitude_);
   focus.panels.clear();
   focus.set = panels_.tree.find(std::span(&lines, 1), kMostInFocus, found_);
@@ -302,10 +324,12 @@ void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to) {
 
 // Whether no panel blocks the line of sight. What blocked other lines is asked first: it often blocks this
 // one.
-bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to) {
+bool FusedOcclusion::isFree(const Vec3d& from, const Vec3d& to, double near_distance) {
+  const double length = sightline::length(to - from);
+  const Vec3d begin = from + (to - from) * (near_distance < length ? near_distance / length : 1.0);
   const auto blocks = [&](std::uint32_t panel) {
     crossings_.clear();
-    crossPanel(panel, from, to);
+    crossPanel(panel, begin, to);
     return !clear();
   };
   const SegmentTest segment(from, to, error_);
@@ -414,6 +438,7 @@ bool FusedOcclusion::gather(std::uint32_t component) {
         continue;
       }
       if (beyond == kNoPanel ? !left_out_.empty() : isLeftOut(beyond)) {
+        components_[component].own = false;
         beyond = panels_.joinedWithout(edge, [this](std::uint32_t other) { return isLeftOut(other); });
         if (isMember()) {
           continue;
@@ -424,6 +449,7 @@ bool FusedOcclusion::gather(std::uint32_t component) {
         return false;  // the boundary
       }
       if (places_[beyond].question == question_) {
+        components_[component].own = false;
         return false;  // a component that was not closed
       }
       places_[beyond] = {question_, component};

@@ -45,14 +45,17 @@ class FusedOcclusion {
   };
   const Proof& proof() const { return proof_; }
   // True if the line of sight between the points surely meets the front of no sheet. object: whose sheets do
-  // not count, or kNoObject.
-  bool isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object = kNoObject);
+  // not count, or kNoObject. near_distance: nor do those that it meets closer to where it begins, metres.
+  bool isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object = kNoObject,
+               double near_distance = 0.0);
   // Finds the panels that any line from one box to the other may meet, once for many questions: a line that
   // begins in the one and ends in the other is compared with no others. The answers are the same without.
   // Each focus holds until it is set again.
   enum Focus : std::uint8_t { kAll, kBeforeWindow, kBehindWindow };
   void focus(Focus on, const CellBox& from, const CellBox& to);
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
+  // The box where lines of sight to a target may end.
+  CellBox endsIn(const CellBox& target) const;
   // Where all lines of sight from a region begin that ask() tries.
   static Vec3d startOf(const CellBox& region);
   // A box around all panels that were followed, or found next to those, since the last call.
@@ -73,16 +76,20 @@ class FusedOcclusion {
   struct Component {
     bool closed = false;  // no part of its boundary is in the shaft, and nothing of it too near
     std::uint32_t first = 0, count = 0;  // into members_
-    bool counted = false;                // what follows is known
-    std::int32_t crossings = 0;          // of the line of sight
+    // It would be gathered just so without any objects but those of its members.
+    bool own = true;
+    bool counted = false;        // what follows is known
+    std::int32_t crossings = 0;  // of the line of sight
     bool in_doubt = false;
   };
 
-  // Answers without the objects of left_out_.
+  // Answers without the objects of left_out_, once the question is started.
   Answer askWithout();
   bool seesAnyEnd();
   void leaveOut(std::uint32_t object);  // and nothing else
   void startQuestion();
+  // Starts the question again without more objects. What was gathered stays where nothing of it is left out.
+  void startRepeat();
   bool isLeftOut(std::uint32_t panel) const {
     return left_out_in_[panels_.panels[panel].object] == question_;
   }
@@ -92,7 +99,7 @@ class FusedOcclusion {
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
   bool isCrossedOften(std::uint32_t component, const Vec3d& end);
   void findCrossings(const Vec3d& from, const Vec3d& to);
-  bool isFree(const Vec3d& from, const Vec3d& to);
+  bool isFree(const Vec3d& from, const Vec3d& to, double near_distance = 0.0);
   // True if test(panel) holds for one of the panels of which the line of sight meets the bounds. Asks them in
   // any order, and stops at the first.
   template <typename Test>
@@ -141,8 +148,10 @@ class FusedOcclusion {
   std::vector<std::uint32_t> found_;     // places in one of these, or in the tree of panels
   std::vector<std::uint32_t> blockers_;  // panels that blocked lines of sight, the last one first
   std::vector<Component> components_;
-  std::vector<std::uint32_t> members_;  // panels, by component
-  std::vector<std::uint32_t> ahead_;    // members whose edges have not been looked at; a heap
+  std::vector<std::uint32_t> members_;        // panels, by component
+  std::vector<Component> components_before_;  // those of the question that is asked again
+  std::vector<std::uint32_t> members_before_;
+  std::vector<std::uint32_t> ahead_;  // members whose edges have not been looked at; a heap
   struct Place {
     std::uint32_t question = 0, component = 0;
   };

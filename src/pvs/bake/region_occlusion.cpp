@@ -17,10 +17,27 @@ namespace {
 // their coordinates and each time that it is as far away from them as they are from each other.
 constexpr double kPlaceRounding = 0x1p-44;
 constexpr int kMaxHalves = 2;  // so many are cut off one end of a part in a row, at most
-// Random lines of sight that are tried before narrowing, and before each division of a passage.
-constexpr int kLinesBefore = 32, kLinesOfPassage = 16;
+// Random lines of sight that are tried before narrowing, also to the target's surface, and before each
+// division of a passage.
+constexpr int kLinesBefore = 32, kLinesToSurface = 64, kLinesOfPassage = 16;
 // A window is of little use across an axis along which the gap is shorter than this part of the longest one.
 constexpr double kLeastGap = 0.25;
+
+// Numbers that are the same for each question.
+class RandomNumbers {
+ public:
+  std::uint32_t next() { return state_ = state_ * 1664525u + 1013904223u; }
+  Vec3d pointIn(const CellBox& box) {
+    Vec3d point = box.min;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] += (box.max[axis] - box.min[axis]) * (static_cast<double>(next() >> 8) * 0x1p-24);
+    }
+    return point;
+  }
+
+ private:
+  std::uint32_t state_ = 1;
+};
 
 struct Interval {
   double low, high;
@@ -94,7 +111,7 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   }
   narrowed_or_divided_ = true;
   fused_.focus(FusedOcclusion::kAll, region, target.box);
-  if (hasClearLine(region, target, kLinesBefore)) {
+  if (hasClearLine(region, target, kLinesBefore) || hasClearLineToSurface(region, target, kLinesToSurface)) {
     return Answer::kClear;
   }
   if (effort.narrowings == 0) {
@@ -218,21 +235,25 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
 }
 
 bool RegionOcclusion::hasClearLine(const CellBox& region, const FusedTarget& target, int lines) {
-  std::uint32_t random = 1;
-  const auto share = [&] {
-    random = random * 1664525u + 1013904223u;
-    return static_cast<double>(random >> 8) * 0x1p-24;
-  };
-  const auto pointIn = [&](const CellBox& box) {
-    Vec3d point = box.min;
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] += (box.max[axis] - box.min[axis]) * share();
-    }
-    return point;
-  };
+  RandomNumbers random;
   for (int line = 0; line < lines; ++line) {
-    const Vec3d from = pointIn(region), to = pointIn(target.box);
-    if (fused_.isClear(from, to, target.object)) {
+    const Vec3d from = random.pointIn(region), to = random.pointIn(target.box);
+    if (fused_.isClear(from, to, target.object, near_distance_)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool RegionOcclusion::hasClearLineToSurface(const CellBox& region, const FusedTarget& target, int lines) {
+  const CellBox ends = fused_.endsIn(target.box);
+  RandomNumbers random;
+  for (int line = 0; line < lines; ++line) {
+    const Vec3d from = random.pointIn(region);
+    Vec3d to = random.pointIn(ends);
+    const int axis = line % 3;
+    to[axis] = from[axis] < to[axis] ? ends.min[axis] : ends.max[axis];
+    if (fused_.isClear(from, to, target.object, near_distance_)) {
       return true;
     }
   }

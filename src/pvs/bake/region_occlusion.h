@@ -66,8 +66,12 @@ class RegionOcclusion {
   // All lines of each have to be blocked. A half of which narrowing cuts nothing off is given up: dividing it
   // again costs as much as before and rarely decides.
   Answer dividePassage(const Passage& passage, const RegionEffort& effort);
-  // True if one of so many random lines from the region to the target is clear.
+  // True if one of so many random lines from the region to the target is clear, but for what is too near to
+  // hide anything. Then no division can show that the target is hidden: some part of it holds the line.
   bool hasClearLine(const CellBox& region, const FusedTarget& target, int lines);
+  // The same of lines that end on the surface of the box that has to be hidden, which is a little wider than
+  // the target: what touches the surface that hides all else of it is seen by them alone.
+  bool hasClearLineToSurface(const CellBox& region, const FusedTarget& target, int lines);
   // Narrows all boxes of a passage, so many times at the most. cut: set to true if one gets smaller.
   Answer narrowPassage(Passage& passage, std::uint32_t times, bool& cut);
   // Cuts off what can be cut off all ends of a part, and asks about the whole passage again if that is
