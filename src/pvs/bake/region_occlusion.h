@@ -69,8 +69,9 @@ class RegionOcclusion {
   // True if one of so many random lines from the region to the target is clear, but for what is too near to
   // hide anything. Then no division can show that the target is hidden: some part of it holds the line.
   bool hasClearLine(const CellBox& region, const FusedTarget& target, int lines);
-  // The same of lines that end on the surface of the box that has to be hidden, which is a little wider than
-  // the target: what touches the surface that hides all else of it is seen by them alone.
+  // True if such a line is clear that ends on the surface of the box that has to be hidden. That box is a
+  // little wider than the target: where a surface that touches the target hides all else of it, only its
+  // surface is seen.
   bool hasClearLineToSurface(const CellBox& region, const FusedTarget& target, int lines);
   // Narrows all boxes of a passage, so many times at the most. cut: set to true if one gets smaller.
   Answer narrowPassage(Passage& passage, std::uint32_t times, bool& cut);
