@@ -81,7 +81,7 @@ TEST(DeepTree, IsBuiltAndAskedOnASmallStack) {
 }
 
 TEST(DeepTree, IsNeverDeeperThanItsLimit) {
-  const OccluderSet set = setOf(fence(1000));
+  const OccluderSet set = setOf(fence(1600));
   for (const bool orthographic : {false, true}) {
     for (const auto variant : std::span(kVariants).first(rounds(std::size(kVariants)))) {
       onASmallStack([&] {
