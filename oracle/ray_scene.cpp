@@ -29,7 +29,6 @@ void setRays(const RayScene::Batch& rays, std::uint32_t count, RTCRayHit16& pack
     packet.ray.tfar[i] = ray.length;
     packet.ray.time[i] = 0.0f;
     packet.ray.mask[i] = 0xffffffffu;
-    packet.ray.id[i] = i;
     packet.ray.flags[i] = 0;
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;

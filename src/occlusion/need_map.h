@@ -14,13 +14,11 @@ namespace sightline::occlusion {
 // that there is of them is hidden, is of no use. All rectangles lie within the target.
 class NeedMap {
  public:
-  static constexpr std::int32_t kSize = SquareDepths::kSize;
-
   // Needs nothing.
   void clear(const DepthTarget& target);
   // A box that lies in these pixels and is nowhere nearer than this reciprocal depth is to be hidden.
   void add(const PixelRectangle& rectangle, float nearest);
-  // Looks what the target hides by now. Call this before pixels(), and after the target has come nearer.
+  // Finds out what the target hides by now. Call this before pixels(), and after the target has come nearer.
   void look(const SquareDepths& target);
 
   // An upper bound, but for rounding, of the pixels of a rectangle in which a surface with these depths may

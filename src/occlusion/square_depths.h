@@ -18,10 +18,11 @@ class SquareDepths {
 
   // Looks at all of a target.
   void look(const DepthTarget& target);
-  // Whether all of a rectangle of that target is nearer than this reciprocal depth.
+  // Whether all of a rectangle is nearer than this reciprocal depth. It lies within the target, which is the
+  // one that was looked at last.
   bool allNearer(const DepthTarget& target, const PixelRectangle& rectangle, float than) const;
 
-  // Of the squares of a row. Whoever draws into the target has to change them.
+  // A value for each square of a row. Whoever draws into the target has to change them.
   float* ofRow(std::int32_t row) { return least_.data() + at(row); }
   const float* ofRow(std::int32_t row) const { return least_.data() + at(row); }
 

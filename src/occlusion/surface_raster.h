@@ -9,7 +9,7 @@
 
 #include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
-#include "src/base/zeroed_array.h"
+#include "src/base/sparse_array.h"
 #include "src/occlusion/chain_edges.h"
 #include "src/occlusion/surface_view.h"
 #include "src/occlusion/winding_map.h"
@@ -103,11 +103,11 @@ class SurfaceRaster {
   SurfaceStats stats_;
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;
-  // These have a place for each item of the largest set that was drawn. What is zero there says nothing.
-  base::ZeroedArray<ChainSum> sums_;                  // by chain
-  base::ZeroedArray<Facing> facings_;                 // by patch
-  base::ZeroedArray<Rest> patch_rests_, part_rests_;  // by patch and by part
-  std::uint32_t group_ = 0;                     // number of the last group
+  // These have a place for each item of the largest set that was drawn.
+  base::SparseArray<ChainSum> sums_;                  // by chain
+  base::SparseArray<Facing> facings_;                 // by patch
+  base::SparseArray<Rest> patch_rests_, part_rests_;  // by patch and by part
+  std::uint32_t group_ = 0;                           // number of the last group
   // Groups that wait for being drawn, their boundaries, and how far away they are:
   std::vector<Group> groups_;
   std::vector<BoundaryChain> boundary_;
@@ -133,7 +133,7 @@ class SurfaceRaster {
   // Parts of which something paid in this view and in the one before; and where a part is in the first list,
   // plus 1, or 0.
   std::vector<UsefulPart> useful_, useful_before_;
-  base::ZeroedArray<std::uint32_t> place_in_useful_;
+  base::SparseArray<std::uint32_t> place_in_useful_;
   std::vector<std::uint32_t> useful_parts_;
 };
 

@@ -28,9 +28,9 @@ void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
     far_stride_ = static_cast<std::uint32_t>(columns * FarDepths::kAcross + FarDepths::kSpare);
     far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
   }
-  farthest_.look(target);
+  squares_.look(target);
   if (needs_ != nullptr) {
-    needs_->look(farthest_);
+    needs_->look(squares_);
   }
 }
 
@@ -75,7 +75,7 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
     }
   }
   if (needs_ != nullptr) {
-    needs_->look(farthest_);
+    needs_->look(squares_);
   }
 }
 
@@ -96,7 +96,7 @@ WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
   const GroupCover cover{.runs = plan.in_runs ? runs_.data() : nullptr,
                          .tiles = tiles_.data(),
                          .extents = extents_.data(),
-                         .farthest = &farthest_,
+                         .squares = &squares_,
                          .columns = columns_,
                          .range = tiles,
                          .target = target_,

@@ -28,8 +28,9 @@ struct WindingGroup {
 
 class WindingMap {
  public:
-  // needs: what counts as a gain, or null for all that becomes nearer. It must outlive the view, and looks at
-  // the target again after each draw().
+  // The target holds what it is to begin with, and nobody else writes into it up to the last draw(). needs:
+  // what counts as a gain, or null for all that becomes nearer. It must outlive the view, and looks at the
+  // target again after each draw().
   void begin(const DepthTarget& target, NeedMap* needs = nullptr);
   EdgeBuffer buffer() const {
     return {static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)};
@@ -37,7 +38,7 @@ class WindingMap {
 
   // Whether all of a rectangle of the target is nearer than this reciprocal depth.
   bool hides(const PixelRectangle& rectangle, float nearest) const {
-    return farthest_.allNearer(target_, rectangle, nearest);
+    return squares_.allNearer(target_, rectangle, nearest);
   }
   // In how many pixels of a rectangle of the target a surface that is nowhere nearer than this reciprocal
   // depth may gain something; or more.
@@ -81,7 +82,7 @@ class WindingMap {
   std::vector<TileRowRuns> runs_;        // by row of tiles
   std::uint32_t far_stride_ = 0;
   std::vector<float> far_;          // see FarDepths; all infinite between groups
-  SquareDepths farthest_;           // of the target
+  SquareDepths squares_;            // of the target
   std::vector<Plan> plans_;         // of the groups that are drawn
   std::vector<WindingGain> gains_;  // by group and first row of the tiles that a thread draws
 };

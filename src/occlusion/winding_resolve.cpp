@@ -25,10 +25,11 @@ using PixelsV = hn::Vec<Pixels>;
 inline constexpr Pixels kPixels;
 static_assert(hn::MaxLanes(kPixels) <= 2 * kSquare);
 
-// In each lane the value of the square that the pixel is in. squares: that of the first pixel, and the next.
+// In each lane the value of the square that the pixel is in. squares: the square of the first pixel, and the
+// next one.
 HWY_INLINE PixelsV ofSquares(const float* squares) {
   auto values = hn::Set(kPixels, squares[0]);
-  if constexpr (hn::MaxLanes(kPixels) > kSquare) {
+  if (hn::Lanes(kPixels) > kSquare) {
     values = hn::IfThenElse(hn::FirstN(kPixels, kSquare), values, hn::Set(kPixels, squares[1]));
   }
   return values;
@@ -136,7 +137,7 @@ class Gains {
 
 // Sets the values of one or two squares to the least ones of their lanes.
 HWY_INLINE void setSquares(PixelsV lanes, float* squares) {
-  if constexpr (hn::MaxLanes(kPixels) > kSquare) {
+  if (hn::Lanes(kPixels) > kSquare) {
     const auto first = hn::FirstN(kPixels, kSquare);
     const auto infinite = hn::Set(kPixels, kInfinite);
     squares[1] = hn::GetLane(hn::MinOfLanes(kPixels, hn::IfThenElse(first, infinite, lanes)));
@@ -147,7 +148,7 @@ HWY_INLINE void setSquares(PixelsV lanes, float* squares) {
 
 // Sets the pixels of a vector of columns, from x on, that have bits in covered[] to a depth where that is
 // nearer. Adds to each lane of `gained` how many become nearer by kGain, and gain by that. Returns the least
-// depths that there are by now.
+// depths that there are by now. Pixels without a meaning are neither counted nor returned.
 template <typename Depths, typename Counts>
 HWY_INLINE PixelsV gainColumns(const PixelRows& pixels, std::int32_t x, const std::uint32_t* covered,
                                const Depths& depths, const Gains& gain, Counts& gained) {
@@ -155,6 +156,7 @@ HWY_INLINE PixelsV gainColumns(const PixelRows& pixels, std::int32_t x, const st
   const hn::RebindToSigned<Pixels> numbers;
   const auto first_bit = static_cast<std::uint32_t>(x % kWide);
   const auto lane_bits = hn::Shl(hn::Set(bits, 1u), hn::Add(hn::Iota(bits, 0u), hn::Set(bits, first_bit)));
+  const auto valid = hn::FirstN(kPixels, static_cast<std::size_t>(std::max(pixels.valid - x, 0)));
   const auto farthest = gain.farthest(x), nearest = gain.nearest(x);
   auto least = hn::Set(kPixels, kInfinite);
   float* out = pixels.reciprocal_depth + x;
@@ -170,38 +172,38 @@ HWY_INLINE PixelsV gainColumns(const PixelRows& pixels, std::int32_t x, const st
       least = hn::Min(least, now);
       const auto needed = hn::And(hn::Gt(depth, hn::Max(farthest, hn::Mul(old, hn::Set(kPixels, kGain)))),
                                   hn::Lt(old, nearest));
-      gained = hn::Sub(gained, hn::VecFromMask(numbers, hn::RebindMask(numbers, hn::And(nearer, needed))));
+      const auto counted = hn::And(hn::And(nearer, valid), needed);
+      gained = hn::Sub(gained, hn::VecFromMask(numbers, hn::RebindMask(numbers, counted)));
     }
   }
-  const auto valid = static_cast<std::size_t>(std::max(pixels.valid - x, 0));
-  return hn::IfThenElse(hn::FirstN(kPixels, valid), least, hn::Set(kPixels, kInfinite));
+  return hn::IfThenElse(valid, least, hn::Set(kPixels, kInfinite));
 }
 
-// Does that in a tile, but for squares that are nearer by now than any of these depths. least: of the tile's
-// squares. Returns how many pixels gain.
+// Sets the pixels of a tile that have bits in covered[] to a depth where that is nearer. Squares are passed
+// over that are nearer already than any of these depths. squares: the farthest pixels of those of the tile.
+// Returns how many pixels gain.
 template <typename Depths>
 HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, const std::uint32_t* covered,
-                                  const Depths& depths, const Gains& gain, float* least) {
+                                  const Depths& depths, const Gains& gain, float* squares) {
   const hn::RebindToSigned<Pixels> numbers;
   const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels)), step = std::max(lanes, kSquare);
-  const std::uint32_t all = ~0u >> (kWide - step);
+  const std::uint32_t all_of_step = ~0u >> (kWide - step);
   const std::int32_t width = std::min(pixels.width - tile * kWide, kWide);
   std::uint32_t columns = 0;  // that have covered pixels
   for (std::int32_t y = 0; y < kHigh; ++y) {
     columns |= covered[y];
   }
   auto gained = hn::Zero(numbers);
-  for (std::int32_t in_tile = 0; in_tile < width; in_tile += step) {
-    if ((columns >> in_tile & all) == 0) {
+  for (std::int32_t in_tile = 0; in_tile < width; in_tile += step, squares += step / kSquare) {
+    if ((columns >> in_tile & all_of_step) == 0) {
       continue;
     }
-    float* squares = least + in_tile / kSquare;
     const std::int32_t first = tile * kWide + in_tile;
-    bool nearer = false;
+    bool comes_nearer = false;
     for (std::int32_t x = first; x < first + step; x += lanes) {
-      nearer = nearer || !hn::AllFalse(kPixels, hn::Gt(depths.nearest(x), ofSquares(squares)));
+      comes_nearer = comes_nearer || !hn::AllFalse(kPixels, hn::Gt(depths.nearest(x), ofSquares(squares)));
     }
-    if (!nearer) {
+    if (!comes_nearer) {
       continue;
     }
     auto now = hn::Set(kPixels, kInfinite);
@@ -269,12 +271,12 @@ HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const Pi
                              const Depths& depths, const Gains& gains, WindingGain& gain) {
   WindingTile* tiles = group.tiles + std::ptrdiff_t{group.columns} * row;
   const TileExtent& extent = group.extents[row];
-  float* least = group.farthest->ofRow(row);
+  float* squares = group.squares->ofRow(row);
   const std::int32_t last = coverRow(tiles, extent, group.range.last_column, pixels.width);
   for (std::int32_t x = extent.first; x <= last; ++x) {
     ++gain.tiles;
     std::uint32_t* covered = tiles[x].planes[0];
-    gain.nearer += gainTile(pixels, x, covered, depths, gains, least + x * (kWide / kSquare));
+    gain.nearer += gainTile(pixels, x, covered, depths, gains, squares + x * (kWide / kSquare));
     for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kBits))) {
       hn::Store(hn::Zero(kBits), kBits, covered + lane);
     }
@@ -286,7 +288,7 @@ template <typename Depths>
 HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
                             const Depths& depths, const Gains& gains, WindingGain& gain) {
   const TileRowRuns& runs = group.runs[row];
-  float* least = group.farthest->ofRow(row);
+  float* squares = group.squares->ofRow(row);
   HWY_ALIGN std::uint32_t covered[kHigh];
   for (std::int32_t x = runs.extent.first; x <= runs.extent.last; ++x) {
     ++gain.tiles;
@@ -296,7 +298,7 @@ HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const Pix
                             hn::Sub(hn::Load(kNumbers, runs.end + lane), origin)),
                 kBits, covered + lane);
     }
-    gain.nearer += gainTile(pixels, x, covered, depths, gains, least + x * (kWide / kSquare));
+    gain.nearer += gainTile(pixels, x, covered, depths, gains, squares + x * (kWide / kSquare));
   }
 }
 

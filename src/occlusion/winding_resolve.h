@@ -18,7 +18,7 @@ struct GroupCover {
   const TileRowRuns* runs = nullptr;    // by row of tiles, of a group that is drawn in runs; else null
   WindingTile* tiles = nullptr;         // of one that is not; cleared
   const TileExtent* extents = nullptr;  // by row of tiles, of one that is not
-  SquareDepths* farthest = nullptr;     // of the target; kept up to date
+  SquareDepths* squares = nullptr;      // of the target; they are kept up to date
   std::int32_t columns = 0;             // tiles in a row of the target
   TileRange range;                      // those of the group
   DepthTarget target;

@@ -70,7 +70,7 @@ struct NeedBed {
 
   // The same as NeedMap::pixels(), pixel by pixel. A square ends beyond the buffer where that ends in it.
   std::uint32_t pixels(const PixelRectangle& r, const DepthBound& depth) const {
-    constexpr std::int32_t k = NeedMap::kSize;
+    constexpr std::int32_t k = SquareDepths::kSize;
     std::int32_t squares = 0;
     for (std::int32_t row = r.y0 / k; row * k < r.y1; ++row) {
       for (std::int32_t column = r.x0 / k; column * k < r.x1; ++column) {

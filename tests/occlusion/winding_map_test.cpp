@@ -170,6 +170,7 @@ class SmallMap {
   }
   float at(std::uint32_t x, std::uint32_t y) const { return values_[std::size_t{target_.stride} * y + x]; }
   bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kNoDepth; }
+  const std::vector<float>& values() const { return values_; }
   WindingMap& map() { return map_; }
   const DepthTarget& target() const { return target_; }
 
@@ -407,7 +408,7 @@ TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNe
 }
 
 TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
-  constexpr std::int32_t kWidth = 72, kHeight = 40, kSquare = NeedMap::kSize;
+  constexpr std::int32_t kWidth = 72, kHeight = 40, kSquare = SquareDepths::kSize;
   const PixelRectangle all{0, 0, kWidth, kHeight};
   const std::array polygon{Polygon{box(-9.0, -9.0, kWidth + 9.0, kHeight + 9.0)}};
   std::mt19937 random(31);
@@ -432,25 +433,42 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
       hwy::SetSupportedTargetsForTest(instructions);
       std::vector<float> values = old;
       const DepthTarget target{values.data(), kWidth, kHeight, kWidth + 8};
-      NeedMap needs;
-      needs.clear(target);
-      for (std::int32_t i = 0; i < static_cast<std::int32_t>(to_hide.size()); ++i) {
-        const std::int32_t x = i % (kWidth / kSquare) * kSquare, y = i / (kWidth / kSquare) * kSquare;
-        for (const float nearest : to_hide[static_cast<std::size_t>(i)]) {
-          needs.add({x, y, x + kSquare, y + kSquare}, nearest);
-        }
-      }
       WindingMap map;
       map.begin(target);
       std::vector<BoundaryEdge> edges;
       const std::array chains{addChain(polygon[0].points, 1, map.buffer(), edges)};
       const std::array depths{PartDepth{all, {.at_origin = depth, .floor = depth}}};
+      // Pixels of squares in which a surface at this depth may gain something.
+      const auto wanted = [&] {
+        std::uint32_t pixels = 0;
+        for (std::int32_t i = 0; i < static_cast<std::int32_t>(to_hide.size()); ++i) {
+          const std::int32_t x0 = i % (kWidth / kSquare) * kSquare, y0 = i / (kWidth / kSquare) * kSquare;
+          const auto [a, b] = to_hide[static_cast<std::size_t>(i)];
+          float least = std::numeric_limits<float>::infinity();
+          for (std::int32_t y = y0; y < y0 + kSquare; ++y) {
+            const auto row = values.begin() + y * (kWidth + 8) + x0;
+            least = std::min(least, *std::min_element(row, row + kSquare));
+          }
+          pixels += least < std::max(a, b) && depth > std::max(std::min(a, b), least) ? kSquare * kSquare : 0;
+        }
+        return pixels;
+      };
       for (const bool flat : {false, true}) {
         values = old;
+        NeedMap needs;
+        needs.clear(target);
+        for (std::int32_t i = 0; i < static_cast<std::int32_t>(to_hide.size()); ++i) {
+          const std::int32_t x = i % (kWidth / kSquare) * kSquare, y = i / (kWidth / kSquare) * kSquare;
+          for (const float nearest : to_hide[static_cast<std::size_t>(i)]) {
+            needs.add({x, y, x + kSquare, y + kSquare}, nearest);
+          }
+        }
         map.begin(target, &needs);
+        EXPECT_EQ(map.wanted(all, depth), wanted()) << "at first";
         std::array<WindingGain, 1> gains;
         map.draw(std::array{WindingGroup{all, chains, depths, flat}}, edges, gains);
         EXPECT_EQ(gains[0].nearer, expected) << n << ", " << flat << ", " << hwy::TargetName(instructions);
+        EXPECT_EQ(map.wanted(all, depth), wanted()) << "where it is drawn";
         for (std::size_t i = 0; i < old.size(); ++i) {
           if (i % (kWidth + 8) < kWidth) {
             ASSERT_EQ(values[i], std::max(old[i], depth)) << "all that is covered is drawn";
@@ -482,16 +500,16 @@ Polygon convexPolygon(std::mt19937& random, double width, double height) {
   return polygon;
 }
 
-// However many groups have been drawn, and whatever their depths are.
-TEST(WindingMap, HidesARectangleWhereAllOfItsPixelsAreNearer) {
+// However much has been drawn before, and whatever the depths are: nothing that comes nearer is passed over.
+TEST(WindingMap, DrawsOverOtherGroupsWhatItDrawsAloneWhereThatIsNearer) {
   std::mt19937 random(37);
   const auto number = test::numbersFrom<float>(random);
-  std::size_t hidden = 0, not_hidden = 0;
+  const std::vector<std::int64_t> sets = hwy::SupportedAndGeneratedTargets();
+  std::size_t nearer_in_all = 0, not_nearer = 0;
   for (int n = 0; n < 250; ++n) {
     const auto width = static_cast<std::uint32_t>(number(1.0f, 120.0f)),
                height = static_cast<std::uint32_t>(number(1.0f, 40.0f));
     SmallMap map(width, height);
-    const std::vector<std::int64_t> sets = hwy::SupportedAndGeneratedTargets();
     for (std::size_t group = 0; group < 12; ++group) {
       hwy::SetSupportedTargetsForTest(sets[group % sets.size()]);
       const std::array polygon{convexPolygon(random, width, height)};
@@ -500,29 +518,28 @@ TEST(WindingMap, HidesARectangleWhereAllOfItsPixelsAreNearer) {
       const PixelRectangle all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
       const DepthBound depth{number(-0.05f, 0.05f), number(-0.05f, 0.05f), number(0.0f, 4.0f), 0.1f};
       const std::array depths{PartDepth{all, depth}};
-      std::array<WindingGain, 1> gains;
-      map.map().draw(std::array{WindingGroup{all, chains, depths, random() % 2 == 0}}, edges, gains);
-      for (int k = 0; k < 20; ++k) {
-        const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
-        const std::uint32_t x0 = below(width), y0 = below(height), x1 = x0 + 1 + below(width - x0),
-                            y1 = y0 + 1 + below(height - y0);
-        float least = std::numeric_limits<float>::infinity();
-        for (std::uint32_t y = y0; y < y1; ++y) {
-          for (std::uint32_t x = x0; x < x1; ++x) {
-            least = std::min(least, map.at(x, y));
-          }
-        }
-        const PixelRectangle r{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0),
-                               static_cast<std::int32_t>(x1), static_cast<std::int32_t>(y1)};
-        const float than = k % 2 == 0 ? least : std::nextafter(least, kNoDepth);
-        EXPECT_EQ(map.map().hides(r, than), least > than) << n << ", group " << group;
-        (least > than ? hidden : not_hidden) += 1;
-      }
+      const std::array groups{WindingGroup{all, chains, depths, random() % 2 == 0}};
+      const std::vector<float> before = map.values();
+      SmallMap alone(width, height);
+      std::array<WindingGain, 1> gains, gains_alone;
+      alone.map().draw(groups, edges, gains_alone);
+      map.map().draw(groups, edges, gains);
       hwy::SetSupportedTargetsForTest(0);
+      std::uint32_t nearer = 0;
+      for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+          const float old = before[std::size_t{map.target().stride} * y + x], drawn = alone.at(x, y);
+          ASSERT_EQ(map.at(x, y), std::max(old, drawn)) << n << ", group " << group;
+          nearer += drawn > old && drawn > old * 1.125f ? 1 : 0;
+          not_nearer += alone.covered(x, y) && drawn <= old ? 1 : 0;
+        }
+      }
+      EXPECT_EQ(gains[0].nearer, nearer) << n << ", group " << group;
+      nearer_in_all += nearer;
     }
   }
-  EXPECT_GT(hidden, 5000u);
-  EXPECT_GT(not_hidden, 5000u);
+  EXPECT_GT(nearer_in_all, 100'000u);
+  EXPECT_GT(not_nearer, 100'000u);
 }
 
 TEST(WindingMap, CoversTheSameOfConvexPolygonsInRunsAndInTiles) {
