@@ -77,6 +77,9 @@ namespace sightline::occlusion {
 namespace {
 HWY_EXPORT(lookAtRow);
 HWY_EXPORT(openBehind);
+
+constexpr std::int32_t kSquare = SquareDepths::kSize;
+
 }  // namespace
 
 void NeedMap::clear(const DepthTarget& target) {
@@ -90,10 +93,8 @@ void NeedMap::clear(const DepthTarget& target) {
 }
 
 void NeedMap::add(const PixelRectangle& rectangle, float nearest) {
-  const std::int32_t first = rectangle.x0 / SquareDepths::kSize,
-                     end = (rectangle.x1 - 1) / SquareDepths::kSize + 1;
-  for (std::int32_t row = rectangle.y0 / SquareDepths::kSize; row * SquareDepths::kSize < rectangle.y1;
-       ++row) {
+  const std::int32_t first = rectangle.x0 / kSquare, end = (rectangle.x1 - 1) / kSquare + 1;
+  for (std::int32_t row = rectangle.y0 / kSquare; row * kSquare < rectangle.y1; ++row) {
     float *farthest = farthest_.data() + at(row), *near = nearest_.data() + at(row),
           *open = open_.data() + at(row);
     for (std::int32_t column = first; column < end; ++column) {
@@ -115,22 +116,20 @@ std::uint32_t NeedMap::pixels(const PixelRectangle& rectangle, const DepthBound&
     return 0;
   }
   // In a square the bound is nearest in a corner.
-  constexpr auto kLast = static_cast<float>(SquareDepths::kSize - 1),
-                 kStep = static_cast<float>(SquareDepths::kSize);
+  constexpr auto kLast = static_cast<float>(kSquare - 1), kStep = static_cast<float>(kSquare);
   const float corner = std::max(kLast * depth.along_x, 0.0f) + std::max(kLast * depth.along_y, 0.0f);
-  const std::int32_t column = rectangle.x0 / SquareDepths::kSize, row = rectangle.y0 / SquareDepths::kSize;
-  const SquareRows squares{
-      .open = open_.data() + at(row) + column,
-      .stride = static_cast<std::size_t>(stride_),
-      .rows = static_cast<std::size_t>((rectangle.y1 - 1) / SquareDepths::kSize + 1 - row),
-      .count = static_cast<std::size_t>((rectangle.x1 - 1) / SquareDepths::kSize + 1 - column),
-      .first = depth.at_origin + corner + depth.along_y * (kStep * static_cast<float>(row)) +
-               depth.along_x * (kStep * static_cast<float>(column)),
-      .per_column = kStep * depth.along_x,
-      .per_row = kStep * depth.along_y,
-      .floor = depth.floor};
-  const std::size_t pixels =
-      HWY_DYNAMIC_DISPATCH(openBehind)(squares) * SquareDepths::kSize * SquareDepths::kSize;
+  const std::int32_t column = rectangle.x0 / kSquare, row = rectangle.y0 / kSquare;
+  const SquareRows squares{.open = open_.data() + at(row) + column,
+                           .stride = static_cast<std::size_t>(stride_),
+                           .rows = static_cast<std::size_t>((rectangle.y1 - 1) / kSquare + 1 - row),
+                           .count = static_cast<std::size_t>((rectangle.x1 - 1) / kSquare + 1 - column),
+                           .first = depth.at_origin + corner +
+                                    depth.along_y * (kStep * static_cast<float>(row)) +
+                                    depth.along_x * (kStep * static_cast<float>(column)),
+                           .per_column = kStep * depth.along_x,
+                           .per_row = kStep * depth.along_y,
+                           .floor = depth.floor};
+  const std::size_t pixels = HWY_DYNAMIC_DISPATCH(openBehind)(squares) * kSquare * kSquare;
   return static_cast<std::uint32_t>(
       std::min<std::size_t>(pixels, static_cast<std::size_t>(rectangle.area())));
 }
