@@ -111,7 +111,8 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   }
   narrowed_or_divided_ = true;
   fused_.focus(FusedOcclusion::kAll, region, target.box);
-  if (hasClearLine(region, target, kLinesBefore) || hasClearLineToSurface(region, target, kLinesToSurface)) {
+  if (hasClearLine(region, target, LineEnds::kInside, kLinesBefore) ||
+      hasClearLine(region, target, LineEnds::kOnSurface, kLinesToSurface)) {
     return Answer::kClear;
   }
   if (effort.narrowings == 0) {
@@ -201,7 +202,7 @@ void RegionOcclusion::focusOn(const Passage& passage) {
 }
 
 RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, const RegionEffort& effort) {
-  if (hasClearLine(passage.region, {passage.target, passage.object}, kLinesOfPassage)) {
+  if (hasClearLine(passage.region, {passage.target, passage.object}, LineEnds::kInside, kLinesOfPassage)) {
     return Answer::kClear;
   }
   if (effort.divisions == 0) {
@@ -234,25 +235,18 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
   return Answer::kHidden;
 }
 
-bool RegionOcclusion::hasClearLine(const CellBox& region, const FusedTarget& target, int lines) {
-  RandomNumbers random;
-  for (int line = 0; line < lines; ++line) {
-    const Vec3d from = random.pointIn(region), to = random.pointIn(target.box);
-    if (fused_.isClear(from, to, target.object, near_distance_)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-bool RegionOcclusion::hasClearLineToSurface(const CellBox& region, const FusedTarget& target, int lines) {
-  const CellBox ends = fused_.endsIn(target.box);
+bool RegionOcclusion::hasClearLine(const CellBox& region, const FusedTarget& target, LineEnds where,
+                                   int lines) {
+  const bool on_surface = where == LineEnds::kOnSurface;
+  const CellBox ends = on_surface ? fused_.endsIn(target.box) : target.box;
   RandomNumbers random;
   for (int line = 0; line < lines; ++line) {
     const Vec3d from = random.pointIn(region);
     Vec3d to = random.pointIn(ends);
-    const int axis = line % 3;
-    to[axis] = from[axis] < to[axis] ? ends.min[axis] : ends.max[axis];
+    if (on_surface) {
+      const int axis = line % 3;
+      to[axis] = from[axis] < to[axis] ? ends.min[axis] : ends.max[axis];
+    }
     if (fused_.isClear(from, to, target.object, near_distance_)) {
       return true;
     }

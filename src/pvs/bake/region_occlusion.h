@@ -66,13 +66,12 @@ class RegionOcclusion {
   // All lines of each have to be blocked. A half of which narrowing cuts nothing off is given up: dividing it
   // again costs as much as before and rarely decides.
   Answer dividePassage(const Passage& passage, const RegionEffort& effort);
+  // Where lines of sight end: in the target, or on the surface of the box that has to be hidden. That box is
+  // a little wider: where a surface that touches the target hides all else of it, only its surface is seen.
+  enum class LineEnds : std::uint8_t { kInside, kOnSurface };
   // True if one of so many random lines from the region to the target is clear, but for what is too near to
   // hide anything. Then no division can show that the target is hidden: some part of it holds the line.
-  bool hasClearLine(const CellBox& region, const FusedTarget& target, int lines);
-  // True if such a line is clear that ends on the surface of the box that has to be hidden. That box is a
-  // little wider than the target: where a surface that touches the target hides all else of it, only its
-  // surface is seen.
-  bool hasClearLineToSurface(const CellBox& region, const FusedTarget& target, int lines);
+  bool hasClearLine(const CellBox& region, const FusedTarget& target, LineEnds where, int lines);
   // Narrows all boxes of a passage, so many times at the most. cut: set to true if one gets smaller.
   Answer narrowPassage(Passage& passage, std::uint32_t times, bool& cut);
   // Cuts off what can be cut off all ends of a part, and asks about the whole passage again if that is
