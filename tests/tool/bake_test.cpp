@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <sstream>
+#include <string>
 
 #include "sightline/comparison/viewpoint_database.h"
 #include "sightline/hierarchy/hierarchy.h"
@@ -33,12 +35,13 @@ std::vector<std::string> bakeArguments(const std::string& scene, const std::stri
   return arguments;
 }
 
-// The tool's own lines; mpirun adds some when a process fails.
+// How many lines the tool itself wrote (mpirun adds some when a process fails), without the one that says how
+// to go on after an interruption: a bake that takes longer than two seconds writes it.
 std::ptrdiff_t ownLines(const std::string& text) {
+  std::istringstream all(text);
   std::ptrdiff_t lines = 0;
-  for (std::size_t at = text.find("sightline: "); at != std::string::npos;
-       at = text.find("sightline: ", at + 1)) {
-    lines += at == 0 || text[at - 1] == '\n' ? 1 : 0;
+  for (std::string line; std::getline(all, line);) {
+    lines += line.starts_with("sightline: ") && line.find("should this be interrupted") == std::string::npos;
   }
   return lines;
 }

@@ -286,8 +286,9 @@ class BakedMethods : public ::testing::Test {
     static const TemporaryFolder folder;
     static const std::string made = [] {
       const std::string name = folder.file("building.sight");
-      const Outcome outcome = runTool({"bake", kScene, "-o", name, "--depth", "5", "--triangle-budget", "1",
-                                       "--databases", "area-angle,minimum-sets"});
+      const Outcome outcome =
+          runTool({"bake", kScene, "-o", name, "--depth", "5", "--triangle-budget", "1", "--databases",
+                   "area-angle,minimum-sets", "--viewpoint-spacing", "20"});
       EXPECT_EQ(outcome.code, 0) << outcome.err;
       return name;
     }();
