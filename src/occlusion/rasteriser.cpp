@@ -11,6 +11,7 @@
 
 #include "src/occlusion/polygon_builder.h"
 #include "src/occlusion/raster_rows.h"
+#include "src/occlusion/surface_aims.h"
 #include "src/occlusion/surface_raster.h"
 
 namespace sightline {
@@ -85,6 +86,30 @@ struct Rasteriser::Impl {
     count();
   }
 
+  // Draws surfaces with what one of the rasters remembers of them. set_view: the view in their space.
+  const SurfaceStats& draw(SurfaceRaster& raster, const SurfaceSet& set, const PixelView& set_view,
+                           std::span<const ObjectId> candidates, const SurfaceDrawing& drawing,
+                           const ParallelFor& parallel_for) {
+    prepareMap();
+    aims.aim(drawing.targets, view, target(), map);
+    raster.draw(set, set_view, candidates, drawing, map, parallel_for);
+    return raster.stats();
+  }
+
+  // The map looks at the buffer again only where others than surfaces were drawn into it.
+  void prepareMap() {
+    if (contents == Contents::kOfMap) {
+      return;
+    }
+    if (contents == Contents::kNothing) {
+      map.begin(target(), kUncovered);
+    } else {
+      map.begin(target());
+    }
+    aims.forget();
+    contents = Contents::kOfMap;
+  }
+
   DepthTarget target() { return {reciprocal_depth.data(), settings.width, settings.height, stride}; }
 
   // Counts what the last draw() drew.
@@ -111,6 +136,11 @@ struct Rasteriser::Impl {
   std::vector<float> reciprocal_depth;
   PixelView view;
   PolygonBuilder builder;
+  // What is in the buffer: nothing at all, nothing but what the map knows of, or something else.
+  enum class Contents : std::uint8_t { kNothing, kOfMap, kOther };
+  Contents contents = Contents::kNothing;
+  WindingMap map;
+  SurfaceAims aims;
   SurfaceRaster surfaces, moving_surfaces;
   BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
@@ -128,6 +158,7 @@ Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
   impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
   fillBuffer(impl_->reciprocal_depth, kUncovered);
+  impl_->contents = Impl::Contents::kNothing;
   impl_->used.clear();
   impl_->stats = {};
 }
@@ -136,6 +167,7 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
                       const ParallelFor& parallel_for) {
   if (!impl_->view.viewers.several()) {
     impl_->draw(set, chosen, parallel_for);
+    impl_->contents = Impl::Contents::kOther;
   }
 }
 
@@ -145,17 +177,16 @@ void Rasteriser::reserve(const SurfaceSet& surfaces) {
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target(), parallel_for);
+  impl_->draw(impl_->surfaces, surfaces, impl_->view, candidates, drawing, parallel_for);
 }
 
-SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
+SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, std::span<const ObjectId> candidates,
                               const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  if (surfaces.surfaces == nullptr) {
+  if (moving.surfaces == nullptr) {
     return {};
   }
-  impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
-                       drawing, impl_->target(), parallel_for);
-  return impl_->surfaces.stats();
+  return impl_->draw(impl_->surfaces, *moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
+                     candidates, drawing, parallel_for);
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
@@ -165,9 +196,10 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing
   }
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
-  impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
-                              moving.surfaces->objects, alone, impl_->target(), parallel_for);
-  return impl_->moving_surfaces.stats();
+  alone.useful_only = false;
+  return impl_->draw(impl_->moving_surfaces, *moving.surfaces,
+                     impl_->view.inSpace(moving.scene_from_surfaces), moving.surfaces->objects, alone,
+                     parallel_for);
 }
 
 const RasterSettings& Rasteriser::settings() const {

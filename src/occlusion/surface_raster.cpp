@@ -7,14 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "src/occlusion/surface_aims.h"
+
 namespace sightline::occlusion {
 namespace {
 
-// Pixels that a group must change for each unit of work, or it rests.
-constexpr double kMinGain = 0.3;
-// It has to change so many where only pixels count in which something is to be hidden: these are few, but
-// worth more.
-constexpr double kMinNeededGain = 0.075;
 constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
 // What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest
 // views ends where the eye has travelled this fraction of the surface's distance for each view of the rest.
@@ -61,20 +58,24 @@ void SurfaceRaster::reserve(const SurfaceSet& set) {
 }
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-                         const SurfaceDrawing& drawing, const DepthTarget& target,
-                         const ParallelFor& parallel_for) {
+                         const SurfaceDrawing& drawing, WindingMap& map, const ParallelFor& parallel_for) {
   drawing_ = drawing;
   parallel_for_ = &parallel_for;
+  map_ = &map;
   winding_ = view.mirrored ? -1 : 1;
   start(set, view.eye, drawing.step);
-  view_.begin(set, view, drawing.min_pixels, target);
-  const bool all = drawing.targets.empty();
-  if (!all) {
-    view_.setNeeds(drawing.targets, needs_);
+  view_.begin(set, view, drawing.min_pixels, map.target());
+  if (PartImage all; view_.imageOfSet(all) && map.wanted(all.rectangle, all.nearest) > 0) {
+    chains_.begin(set, view, view_.clipDepth(), map.buffer());
+    drawParts(candidates);
   }
-  map_.begin(target, all ? nullptr : &needs_);
-  chains_.begin(set, view, view_.clipDepth(), map_.buffer());
-  if (drawing.useful_only) {
+  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
+  stats_.work = static_cast<std::uint32_t>(work_);
+  stats_.complete = work_ < drawing.budget;
+}
+
+void SurfaceRaster::drawParts(std::span<const ObjectId> candidates) {
+  if (drawing_.useful_only) {
     listUseful();
   } else {
     view_.listParts(candidates);
@@ -83,7 +84,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
     if (!withinBudget()) {
       break;
     }
-    if (const std::uint32_t pixels = map_.wanted(part.rectangle, part.nearest); pixels > 0) {
+    if (const std::uint32_t pixels = map_->wanted(part.rectangle, part.nearest); pixels > 0) {
       addPart(part, pixels);
       if (waiting_work_ > kFirstRound + work_ / 2) {
         drawGroups();
@@ -91,9 +92,6 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
     }
   }
   drawGroups();
-  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
-  stats_.work = static_cast<std::uint32_t>(work_);
-  stats_.complete = work_ < drawing.budget;
 }
 
 // What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are
@@ -235,10 +233,10 @@ std::uint64_t SurfaceRaster::countWanted() {
   wanted_.clear();
   std::uint64_t sum = 0;
   for (PatchImage& patch : shown_) {
-    std::uint32_t pixels = map_.wanted(patch.rectangle, patch.nearest);
+    std::uint32_t pixels = map_->wanted(patch.rectangle, patch.nearest);
     if (pixels > 0 && patch.sign != 0) {
       view_.setDepth(patch);
-      pixels = std::min(pixels, map_.wanted(patch.rectangle, patch.depth));
+      pixels = std::min(pixels, map_->wanted(patch.rectangle, patch.depth));
     }
     wanted_.push_back(pixels);
     stats_.patches += pixels > 0 ? 1 : 0;
@@ -336,7 +334,7 @@ void SurfaceRaster::drawGroups() {
                       std::span(depths_).subspan(group.first_depth, group.depth_count), group.flat});
   }
   gains_.resize(std::max(gains_.size(), groups_.size()));
-  map_.draw(drawn_, chains_.edges(), gains_, *parallel_for_);
+  map_->draw(drawn_, chains_.edges(), gains_, *parallel_for_);
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const std::uint64_t work = workOf(groups_[i].edges, gains_[i].tiles);
     account(groups_[i], gains_[i], work);
@@ -400,8 +398,7 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
 void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::uint64_t work) {
   stats_.gain += gain.nearer;
   group.rest->drawn_in = view_number_;
-  const double least = drawing_.targets.empty() ? kMinGain : kMinNeededGain;
-  if (!(gain.nearer < least * static_cast<double>(work))) {
+  if (!(gain.nearer < leastGain(!drawing_.targets.empty()) * static_cast<double>(work))) {
     *group.rest = {.drawn_in = view_number_, .paid_in = view_number_};
     std::uint32_t& place = place_in_useful_[group.part];
     if (place == 0) {

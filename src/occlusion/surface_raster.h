@@ -22,8 +22,9 @@ class SurfaceRaster {
   // Makes room for what is kept of a set from view to view, so that the first draw() need not. Of smaller
   // sets nothing is kept any more.
   void reserve(const SurfaceSet& set);
+  // map: of the view's buffer, aimed at the drawing's targets. view: in the space of the set.
   void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing, const DepthTarget& target, const ParallelFor& parallel_for);
+            const SurfaceDrawing& drawing, WindingMap& map, const ParallelFor& parallel_for);
   const SurfaceStats& stats() const { return stats_; }
 
  private:
@@ -69,6 +70,7 @@ class SurfaceRaster {
   };
 
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
+  void drawParts(std::span<const ObjectId> candidates);
   bool rests(const Rest& rest) const;
   bool leavesOut(const Rest& rest) const;
   bool pays(std::uint32_t pixels, std::uint32_t edges) const;
@@ -98,8 +100,7 @@ class SurfaceRaster {
   std::int32_t winding_ = 1;                   // of a front in this view; -1 in one that mirrors
   SurfaceView view_;
   ChainEdges chains_;
-  NeedMap needs_;  // with targets
-  WindingMap map_;
+  WindingMap* map_ = nullptr;  // of the view
   SurfaceStats stats_;
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sightline/math/frustum.h"
+#include "src/occlusion/surface_aims.h"
 
 namespace sightline::world {
 
@@ -13,8 +14,9 @@ using hierarchy::DynamicTree;
 
 namespace {
 
-constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
 constexpr std::uint32_t kLongestDelay = 15;
+// Where more than one of so many is new, what was of no use in earlier frames says nothing of this one.
+constexpr std::size_t kStill = 2;
 // A join is not drawn either where rounding moves a member by more than this part of its distance.
 constexpr double kDepthRounding = 0x1p-21;
 
@@ -85,26 +87,18 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
   counts_ = {};
   const View view = begin(data, view_world);
   sets_.find(data, view_world, clip_world_ == Plane() ? settings_.groups : 0);
-  if (settings_.occlusion && jumped) {
-    test(data, true);
-    listed_.clear();
-    found_.list(listed_);
-    draw(data, view, listed_, ViewStep::kJump);
-  } else if (settings_.occlusion) {
-    draw(data, view, last, ViewStep::kNext);
+  if (settings_.occlusion) {
+    drawFirst(data, view, last, jumped);
   }
   pyramid_.finish();
   stats.draw_us += microsecondsSince(start);
   const auto drawn = std::chrono::steady_clock::now();
+  hidden_.begin(data);
   test(data, false);
-  if (settings_.occlusion && !jumped) {
-    listed_.clear();
-    found_.listWithout(last_set, listed_);
-    if (culling::changesFast(listed_.size(), last.size())) {
-      draw(data, view, listed_, ViewStep::kSame);
-      pyramid_.finish();
-      test(data, false);
-    }
+  if (settings_.occlusion) {
+    drawFound(data, view, jumped, last_set);
+    usual_work_.frame(work_);
+    version_ = data.version;
   }
   stats.test_us += microsecondsSince(drawn);
   stats.occluders += counts_.occluders;
@@ -112,6 +106,86 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
   stats.nodes_tested += counts_.nodes_tested;
   stats.boxes_tested += counts_.boxes_tested;
   kept.add(found_);
+}
+
+// Draws what is known to hide something before anything is tested: what did so in the last frame, for boxes
+// that are to be hidden again, and where there are none, all that the last frame kept; after a jump all that
+// is in the view's volume.
+void WorldEye::drawFirst(const WorldData& data, const View& view, std::span<const InstanceId> last,
+                         bool jumped) {
+  makeRoom(data);
+  aims_.grow(data.instances.size(), data.instances.capacity());
+  aims_.beginView(jumped);
+  useful_before_.swap(useful_);
+  useful_.clear();
+  work_ = 0;
+  if (jumped) {
+    test(data, true);
+    shown_.clear();
+    found_.list(shown_);
+    work_ = draw(data, view, shown_, whatIsLeft(ViewStep::kJump));
+    return;
+  }
+  hidden_boxes_.clear();
+  hidden_.append(
+      data, aims_.kMaxHiddenBoxes, frame_, [&](std::uint32_t id) { return isDrawn(data.instances[id]); },
+      hidden_boxes_);
+  aims_.aimAtHidden(hidden_boxes_, {}, [&](InstanceId id) { return data.boxOf(id.value); });
+  SurfaceDrawing drawing = whatIsLeft(ViewStep::kNext);
+  drawing.targets = aims_.boxes();
+  drawing.useful_only = !drawing.targets.empty();
+  work_ = draw(data, view, last, drawing);
+}
+
+// Draws what may hide some of what is found not to be hidden, and tests that once more; where nothing is
+// known of that, the surfaces of what is new, if it is much.
+void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, const IdBits& last_set) {
+  shown_.clear();
+  found_.list(shown_);
+  news_.clear();
+  for (const InstanceId id : shown_) {
+    if (!last_set.has(id.value) || data.instances[id.value].born > version_) {
+      news_.push_back(id);
+    }
+  }
+  if (!jumped) {
+    SurfaceDrawing drawing = whatIsLeft(ViewStep::kSame);
+    drawing.draw_resting = news_.size() * kStill > shown_.size();
+    if (!aims_.boxes().empty()) {
+      drawing.budget = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
+                                        [&](InstanceId id) { return data.boxOf(id.value); });
+      drawing.targets = aims_.boxes();
+      if (drawing.budget > 0) {
+        if (const std::uint32_t work = draw(data, view, shown_, drawing); work > 0) {
+          work_ += work;
+          pyramid_.finish();
+          testShown(data);
+        }
+      }
+    } else if (culling::changesFast(news_.size(), shown_.size())) {
+      // What comes into view is not counted in the budget.
+      drawing.budget = settings_.drawing.budget;
+      draw(data, view, news_, drawing);
+      pyramid_.finish();
+      hidden_.begin(data);
+      test(data, false);
+    }
+  }
+  aims_.endView(shown_, news_);
+}
+
+// A world that grows within what was reserved makes this vector copy nothing either.
+void WorldEye::makeRoom(const WorldData& data) {
+  pasts_.reserve(data.instances.capacity());
+  pasts_.resize(std::max(pasts_.size(), data.instances.size()));
+}
+
+// How surfaces are drawn with what is left of the frame's budget.
+SurfaceDrawing WorldEye::whatIsLeft(ViewStep step) const {
+  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
+  drawing.budget -= std::min(drawing.budget, work_);
+  drawing.step = step;
+  return drawing;
 }
 
 // Sets found_ to what may be seen, of all or by the view's volume alone.
@@ -148,6 +222,9 @@ void WorldEye::test(const DynamicTree& tree, bool view_only) {
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const Visibility visibility = answers[i].visibility;
       if (visibility == Visibility::kHidden) {
+        if (!entry.view_only) {
+          noteHidden(node, i, answers[i]);
+        }
         continue;
       }
       const bool sees_all = entry.view_only || visibility == Visibility::kVisible;
@@ -160,6 +237,40 @@ void WorldEye::test(const DynamicTree& tree, bool view_only) {
       }
     }
   }
+}
+
+// What lies beside the view is not hidden by the buffer.
+void WorldEye::noteHidden(const DynamicTree::Node& node, std::size_t child, const BoxAnswer& answer) {
+  if (!answer.on_buffer) {
+    return;
+  }
+  if (node.leaf) {
+    hidden_.addInstance(node.children[child]);
+  } else {
+    hidden_.addNode(node.boxes[child]);
+  }
+}
+
+// Takes what the buffer hides by now out of found_ and shown_.
+void WorldEye::testShown(const WorldData& data) {
+  boxes_.clear();
+  for (const InstanceId id : shown_) {
+    boxes_.push_back(data.boxOf(id.value));
+  }
+  shown_answers_.resize(std::max(shown_answers_.size(), shown_.size()));
+  const std::span<BoxAnswer> answers = std::span(shown_answers_).first(shown_.size());
+  pyramid_.classify(boxes_, answers, {.plain_from = 0});
+  counts_.boxes_tested += static_cast<std::uint32_t>(shown_.size());
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    if (answers[i].visibility == Visibility::kHidden) {
+      found_.remove(shown_[i].value);
+      hidden_.addInstance(shown_[i].value);
+    } else {
+      shown_[left++] = shown_[i];
+    }
+  }
+  shown_.resize(left);
 }
 
 // Whether the surfaces of a join are wholly drawn in the view.
@@ -175,6 +286,12 @@ bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
   return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds, rounding) > 0;
 }
 
+// Whether an instance hides, and all of it is drawn in the view.
+bool WorldEye::hidesInView(const WorldData& data, std::uint32_t id) const {
+  return data.hides(id) && isDrawn(data.instances[id]) &&
+         (clip_ == Plane() || sideOf(clip_, data.boxOf(id), clip_rounding_) > 0);
+}
+
 // Sets of_join_ and alone_. The candidates may have been removed, hidden or moved since they were kept.
 void WorldEye::takeCandidates(const WorldData& data, const View& view,
                               std::span<const InstanceId> candidates) {
@@ -183,15 +300,11 @@ void WorldEye::takeCandidates(const WorldData& data, const View& view,
     members.clear();
   }
   alone_.clear();
-  const bool clips = !(clip_ == Plane());
   for (const InstanceId id : candidates) {
-    if (id.value >= data.instances.size() || !data.hides(id.value)) {
+    if (id.value >= data.instances.size() || !hidesInView(data, id.value)) {
       continue;
     }
     const InstanceData& own = data.instances[id.value];
-    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value), clip_rounding_) <= 0)) {
-      continue;
-    }
     const bool joined = own.join != InstanceData::kNone && isJoined(data, data.joins[own.join]);
     if (joined) {
       of_join_[own.join].emplace_back(own.object);
@@ -255,17 +368,19 @@ void WorldEye::separate(const WorldData& data, std::uint32_t join) {
   of_join_[join].clear();
 }
 
-void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                    ViewStep step) {
-  takeCandidates(data, view, candidates);
-  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
-  drawing.step = step;
+// Returns the work.
+std::uint32_t WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
+                             SurfaceDrawing drawing) {
   const std::uint32_t budget = drawing.budget;
+  if (!drawing.useful_only || !data.joins.empty()) {
+    takeCandidates(data, view, candidates);
+  }
+  if (drawing.useful_only) {
+    takeUseful(data);
+  }
   drawJoins(data, drawing);
   drawAlone(data, view, drawing);
-  if (step != ViewStep::kSame) {
-    usual_work_.frame(budget - drawing.budget);
-  }
+  return budget - drawing.budget;
 }
 
 // Takes what it draws from drawing.budget, as does drawAlone().
@@ -286,8 +401,36 @@ void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
   }
 }
 
-// Sets near_first_ to those of alone_ that are large enough and whose retest delay is over.
-void WorldEye::listNearFirst(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
+// Sets alone_ to the instances that paid in the frame before, the most useful ones first.
+void WorldEye::takeUseful(const WorldData& data) {
+  std::sort(useful_before_.begin(), useful_before_.end(), [](const Useful& a, const Useful& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.id < b.id;
+  });
+  alone_.clear();
+  for (const Useful& useful : useful_before_) {
+    if (useful.id >= data.instances.size()) {
+      continue;
+    }
+    const InstanceData& own = data.instances[useful.id];
+    // What is drawn with a join need not be drawn alone.
+    if (own.born == useful.born && hidesInView(data, useful.id) &&
+        (own.alone || own.join == InstanceData::kNone || of_join_[own.join].empty())) {
+      alone_.push_back(useful.id);
+    }
+  }
+}
+
+// Whether an instance is not drawn now, whatever it covers.
+bool WorldEye::waits(const WorldData& data, std::uint32_t id, const SurfaceDrawing& drawing) const {
+  const Past& past = pasts_[id];
+  const bool rests = drawing.step != ViewStep::kJump && !drawing.draw_resting && past.until > frame_;
+  return past.born == data.instances[id].born && (past.drawn_in == frame_ || rests);
+}
+
+// Sets in_order_ to those of alone_ that are large enough and do not wait: in their order where what was
+// useful is drawn, else the nearest ones first.
+void WorldEye::listInOrder(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
+  std::erase_if(alone_, [&](std::uint32_t id) { return waits(data, id, drawing); });
   boxes_.clear();
   for (const std::uint32_t id : alone_) {
     boxes_.push_back(data.boxOf(id));
@@ -296,50 +439,59 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
   const DepthBufferView buffer = pyramid_.depthBuffer();
   occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height, boxes_,
                           images_);
-  near_first_.clear();
+  in_order_.clear();
   for (std::size_t i = 0; i < alone_.size(); ++i) {
     const occlusion::PixelBox& image = images_[i];
     const bool near = image.place == occlusion::BoxPlace::kUnbounded;
     const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
-    const RetestDelay& delay = retest_delays_[alone_[i]];
-    const bool waits = drawing.step == ViewStep::kNext && delay.until > frame_ &&
-                       delay.born == data.instances[alone_[i]].born;
     // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
     const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
-    if (image.place != occlusion::BoxPlace::kOutside && !open && !waits &&
-        (near || pixels >= drawing.min_pixels)) {
-      near_first_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
+    if (image.place != occlusion::BoxPlace::kOutside && !open && (near || pixels >= drawing.min_pixels)) {
+      in_order_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
     }
   }
-  std::sort(near_first_.begin(), near_first_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
-  });
+  if (!drawing.useful_only) {
+    std::sort(in_order_.begin(), in_order_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
+    });
+  }
 }
 
 void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  // A world that grows within what was reserved makes this vector copy nothing either.
-  retest_delays_.reserve(data.instances.capacity());
-  retest_delays_.resize(std::max(retest_delays_.size(), data.instances.size()));
-  listNearFirst(data, view, drawing);
-  for (const Candidate& candidate : near_first_) {
+  listInOrder(data, view, drawing);
+  for (const Candidate& candidate : in_order_) {
     if (drawing.budget == 0) {
       break;
     }
-    const InstanceData& own = data.instances[candidate.id];
-    const SurfaceStats drawn = pyramid_.draw(
-        MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.originFromMesh(candidate.id)}, drawing);
+    const SurfaceStats drawn =
+        pyramid_.draw(MovingSurfaces{&data.meshes[data.instances[candidate.id].mesh].mesh.surfaces,
+                                     data.originFromMesh(candidate.id)},
+                      drawing);
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
     counts_.edges += drawn.edges;
     drawing.budget -= std::min(drawing.budget, drawn.work);
-    RetestDelay& delay = retest_delays_[candidate.id];
-    if (drawn.groups == 0 || drawn.gain < kMinGain * drawn.work) {
-      // Instances whose delay begins in the same frame are drawn again in different ones.
-      const std::uint32_t last = delay.born == own.born ? delay.length : 0;
-      const std::uint32_t length = std::min(2 * last + 1, kLongestDelay);
-      delay = {own.born, frame_ + 1 + length + candidate.id % (length / 2 + 1), length};
-    } else {
-      delay = {own.born, 0, 0};
-    }
+    account(data, candidate.id, drawn, drawing);
+  }
+}
+
+// What did not pay in a frame for which it was drawn because it had paid before is not drawn first in the
+// next one; what did not pay otherwise rests. Nothing is learnt of what is not before a target.
+void WorldEye::account(const WorldData& data, std::uint32_t id, const SurfaceStats& drawn,
+                       const SurfaceDrawing& drawing) {
+  const bool aims = !drawing.targets.empty();
+  if (aims && drawn.groups == 0) {
+    return;
+  }
+  const std::uint64_t born = data.instances[id].born;
+  Past& past = pasts_[id];
+  const std::uint32_t last = past.born == born ? past.length : 0;
+  past = {.born = born, .drawn_in = frame_};
+  if (drawn.groups > 0 && !(drawn.gain < occlusion::leastGain(aims) * drawn.work)) {
+    useful_.push_back({id, drawn.gain, born});
+  } else if (!drawing.useful_only) {
+    // Instances that begin to rest in the same frame are drawn again in different ones.
+    past.length = std::min(2 * last + 1, kLongestDelay);
+    past.until = frame_ + 1 + past.length + id % (past.length / 2 + 1);
   }
 }
 
@@ -352,14 +504,16 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
                           std::span<const InstanceId> ignored) {
   ++frame_;
   counts_ = {};
+  makeRoom(data);
+  useful_.clear();
   const View view = begin(data, view_world);
   test(data, true);
   for (const InstanceId id : ignored) {
     found_.remove(id.value);
   }
-  listed_.clear();
-  found_.list(listed_);
-  takeCandidates(data, view, listed_);
+  shown_.clear();
+  found_.list(shown_);
+  takeCandidates(data, view, shown_);
   // What an ignored member of a join hides is not known apart from what the others do.
   for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
     const auto of_this = [&](InstanceId id) {
@@ -371,7 +525,7 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
   }
   SurfaceDrawing drawing = settings_.drawing;
   drawing.step = ViewStep::kJump;
-  const bool nothing_between = listed_.empty() && data.unbounded.empty();
+  const bool nothing_between = shown_.empty() && data.unbounded.empty();
   drawJoins(data, drawing);
   drawAlone(data, view, drawing);
   pyramid_.finish();
