@@ -76,6 +76,8 @@ class HidingAims {
 
   // What is to be hidden.
   std::span<const Box> boxes() const { return boxes_; }
+  // The objects that aimAtShown() aims at, where it says that work may be done for them.
+  std::span<const Id> aimedAt() const { return aimed_at_; }
 
   // The view ends. kept, news: objects that the depth buffer shows, and those of them that are new,
   // ascending. Those that were aimed at in vain are left alone for a while.

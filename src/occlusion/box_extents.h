@@ -29,9 +29,6 @@ class BoxExtents {
   const PixelView& view() const { return view_; }
   // What surfaces nearer than this depth do is left out, metres.
   double clipDepth() const { return clip_depth_; }
-  PixelRectangle wholeTarget() const {
-    return {0, 0, static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)};
-  }
 
   // Projects boxes, for the first form of of(). There may be more images than boxes.
   void project(std::span<const Box> boxes, std::vector<PixelBox>& images) const;

@@ -8,6 +8,7 @@
 #include "sightline/occlusion/rasteriser.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/occlusion/polygon_builder.h"
 #include "src/occlusion/raster_rows.h"
@@ -17,6 +18,23 @@
 namespace sightline {
 
 using namespace occlusion;
+
+namespace {
+
+// The box of surfaces that move, in scene space, up to rounding.
+Box boxInScene(const MovingSurfaces& moving) {
+  const Mat4& m = moving.scene_from_surfaces;
+  const Box& own = moving.surfaces->bounds;
+  const Vec3d middle = transformPoint(m, center(own)), half = (Vec3d(own.max) - Vec3d(own.min)) * 0.5;
+  Vec3d reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    reach[axis] =
+        std::abs(m(axis, 0)) * half.x + std::abs(m(axis, 1)) * half.y + std::abs(m(axis, 2)) * half.z;
+  }
+  return {Vec3f(middle - reach), Vec3f(middle + reach)};
+}
+
+}  // namespace
 
 struct Rasteriser::Impl {
   // A thread draws at least so many rows together.
@@ -86,28 +104,19 @@ struct Rasteriser::Impl {
     count();
   }
 
-  // Draws surfaces with what one of the rasters remembers of them. set_view: the view in their space.
-  const SurfaceStats& draw(SurfaceRaster& raster, const SurfaceSet& set, const PixelView& set_view,
-                           std::span<const ObjectId> candidates, const SurfaceDrawing& drawing,
-                           const ParallelFor& parallel_for) {
-    prepareMap();
-    aims.aim(drawing.targets, view, target(), map);
-    raster.draw(set, set_view, candidates, drawing, map, parallel_for);
-    return raster.stats();
-  }
-
-  // The map looks at the buffer again only where others than surfaces were drawn into it.
-  void prepareMap() {
-    if (contents == Contents::kOfMap) {
-      return;
-    }
+  // Prepares the map for drawing surfaces. It looks at the buffer again only where others than surfaces were
+  // drawn into it.
+  void aimAt(std::span<const Box> targets) {
     if (contents == Contents::kNothing) {
       map.begin(target(), kUncovered);
-    } else {
+    } else if (contents == Contents::kOther) {
       map.begin(target());
     }
-    aims.forget();
-    contents = Contents::kOfMap;
+    if (contents != Contents::kOfMap) {
+      contents = Contents::kOfMap;
+      aims.begin(view, target());
+    }
+    aims.aim(targets, map);
   }
 
   DepthTarget target() { return {reciprocal_depth.data(), settings.width, settings.height, stride}; }
@@ -177,16 +186,19 @@ void Rasteriser::reserve(const SurfaceSet& surfaces) {
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->draw(impl_->surfaces, surfaces, impl_->view, candidates, drawing, parallel_for);
+  impl_->aimAt(drawing.targets);
+  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->map, parallel_for);
 }
 
-SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, std::span<const ObjectId> candidates,
+SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
                               const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  if (moving.surfaces == nullptr) {
+  if (surfaces.surfaces == nullptr) {
     return {};
   }
-  return impl_->draw(impl_->surfaces, *moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
-                     candidates, drawing, parallel_for);
+  impl_->aimAt(drawing.targets);
+  impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
+                       drawing, impl_->map, parallel_for);
+  return impl_->surfaces.stats();
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
@@ -194,12 +206,16 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing
   if (moving.surfaces == nullptr) {
     return {};
   }
+  impl_->aimAt(drawing.targets);
+  if (!impl_->aims.mayUse(boxInScene(moving), impl_->map)) {
+    return {};
+  }
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
   alone.useful_only = false;
-  return impl_->draw(impl_->moving_surfaces, *moving.surfaces,
-                     impl_->view.inSpace(moving.scene_from_surfaces), moving.surfaces->objects, alone,
-                     parallel_for);
+  impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
+                              moving.surfaces->objects, alone, impl_->map, parallel_for);
+  return impl_->moving_surfaces.stats();
 }
 
 const RasterSettings& Rasteriser::settings() const {

@@ -8,6 +8,7 @@
 #include "sightline/math/box.h"
 #include "src/occlusion/box_extents.h"
 #include "src/occlusion/need_map.h"
+#include "src/occlusion/pixel_boxes.h"
 #include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
 
@@ -22,15 +23,17 @@ constexpr double leastGain(bool aims) {
 // Many sets may be drawn for the same boxes. What these need is found once, and kept up to date in between.
 class SurfaceAims {
  public:
-  // A view begins, or the map does not know any more what the needs look like.
-  void forget() { known_ = false; }
-  // Has the map aim at these boxes of scene space, or if there are none, at everything. view: of scene space.
-  // The map stays the same until forget().
-  void aim(std::span<const Box> boxes, const PixelView& view, const DepthTarget& target, WindingMap& map);
+  // A view begins, or nothing is aimed at any more. view: of scene space.
+  void begin(const PixelView& view, const DepthTarget& target);
+  // Has the map aim at these boxes of scene space, or if there are none, at everything. It stays the same map
+  // until begin().
+  void aim(std::span<const Box> boxes, WindingMap& map);
+  // False: surfaces that lie in this box of scene space are of no use.
+  bool mayUse(const Box& box, const WindingMap& map) const;
 
  private:
   bool isAimedAt(std::span<const Box> boxes) const;
-  void setNeeds(const PixelView& view, const DepthTarget& target);
+  void setNeeds(const DepthTarget& target);
 
   bool known_ = false;  // the map aims at boxes_
   std::vector<Box> boxes_;

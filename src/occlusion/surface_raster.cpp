@@ -65,16 +65,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   winding_ = view.mirrored ? -1 : 1;
   start(set, view.eye, drawing.step);
   view_.begin(set, view, drawing.min_pixels, map.target());
-  if (PartImage all; view_.imageOfSet(all) && map.wanted(all.rectangle, all.nearest) > 0) {
-    chains_.begin(set, view, view_.clipDepth(), map.buffer());
-    drawParts(candidates);
-  }
-  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
-  stats_.work = static_cast<std::uint32_t>(work_);
-  stats_.complete = work_ < drawing.budget;
-}
-
-void SurfaceRaster::drawParts(std::span<const ObjectId> candidates) {
+  chains_.begin(set, view, view_.clipDepth(), map.buffer());
   if (drawing_.useful_only) {
     listUseful();
   } else {
@@ -84,7 +75,7 @@ void SurfaceRaster::drawParts(std::span<const ObjectId> candidates) {
     if (!withinBudget()) {
       break;
     }
-    if (const std::uint32_t pixels = map_->wanted(part.rectangle, part.nearest); pixels > 0) {
+    if (const std::uint32_t pixels = map.wanted(part.rectangle, part.nearest); pixels > 0) {
       addPart(part, pixels);
       if (waiting_work_ > kFirstRound + work_ / 2) {
         drawGroups();
@@ -92,6 +83,9 @@ void SurfaceRaster::drawParts(std::span<const ObjectId> candidates) {
     }
   }
   drawGroups();
+  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
+  stats_.work = static_cast<std::uint32_t>(work_);
+  stats_.complete = work_ < drawing.budget;
 }
 
 // What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are

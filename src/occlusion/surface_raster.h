@@ -70,7 +70,6 @@ class SurfaceRaster {
   };
 
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
-  void drawParts(std::span<const ObjectId> candidates);
   bool rests(const Rest& rest) const;
   bool leavesOut(const Rest& rest) const;
   bool pays(std::uint32_t pixels, std::uint32_t edges) const;

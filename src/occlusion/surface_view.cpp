@@ -26,19 +26,6 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, double min
   parts_.clear();
 }
 
-bool SurfaceView::imageOfSet(PartImage& image) const {
-  BoxExtent extent;
-  if (!view().sane()) {
-    return false;
-  }
-  if (extents_.of(set_->bounds, extent)) {
-    image = {.rectangle = extent.rectangle, .nearest = extents_.nearestOf(extent)};
-    return true;
-  }
-  image = {.rectangle = extents_.wholeTarget(), .nearest = std::numeric_limits<float>::infinity()};
-  return extent.inexact;
-}
-
 void SurfaceView::listParts(std::span<const ObjectId> objects) {
   candidates_.clear();
   if (view().sane()) {

@@ -70,8 +70,6 @@ class SurfaceView {
   // What was listed last.
   std::span<const PartImage> parts() const { return parts_; }
 
-  // Sets where all of the set lies and how near it is; returns false if nothing of it is in the view.
-  bool imageOfSet(PartImage& image) const;
 
   PatchSide sideOf(std::uint32_t patch) const;
   // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths

@@ -159,7 +159,7 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
         if (const std::uint32_t work = draw(data, view, shown_, drawing); work > 0) {
           work_ += work;
           pyramid_.finish();
-          testShown(data);
+          testAimedAt();
         }
       }
     } else if (culling::changesFast(news_.size(), shown_.size())) {
@@ -251,26 +251,20 @@ void WorldEye::noteHidden(const DynamicTree::Node& node, std::size_t child, cons
   }
 }
 
-// Takes what the buffer hides by now out of found_ and shown_.
-void WorldEye::testShown(const WorldData& data) {
-  boxes_.clear();
-  for (const InstanceId id : shown_) {
-    boxes_.push_back(data.boxOf(id.value));
-  }
-  shown_answers_.resize(std::max(shown_answers_.size(), shown_.size()));
-  const std::span<BoxAnswer> answers = std::span(shown_answers_).first(shown_.size());
-  pyramid_.classify(boxes_, answers, {.plain_from = 0});
-  counts_.boxes_tested += static_cast<std::uint32_t>(shown_.size());
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < shown_.size(); ++i) {
+// Tests what was aimed at once more, and takes what is hidden out of found_ and shown_.
+void WorldEye::testAimedAt() {
+  const std::span<const InstanceId> aimed_at = aims_.aimedAt();
+  aimed_at_answers_.resize(std::max(aimed_at_answers_.size(), aimed_at.size()));
+  const std::span<BoxAnswer> answers = std::span(aimed_at_answers_).first(aimed_at.size());
+  pyramid_.classify(aims_.boxes(), answers, {.plain_from = 0});
+  counts_.boxes_tested += static_cast<std::uint32_t>(aimed_at.size());
+  for (std::size_t i = 0; i < aimed_at.size(); ++i) {
     if (answers[i].visibility == Visibility::kHidden) {
-      found_.remove(shown_[i].value);
-      hidden_.addInstance(shown_[i].value);
-    } else {
-      shown_[left++] = shown_[i];
+      found_.remove(aimed_at[i].value);
+      hidden_.addInstance(aimed_at[i].value);
     }
   }
-  shown_.resize(left);
+  std::erase_if(shown_, [&](InstanceId id) { return !found_.has(id.value); });
 }
 
 // Whether the surfaces of a join are wholly drawn in the view.

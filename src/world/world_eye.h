@@ -94,7 +94,7 @@ class WorldEye {
   void test(const WorldData& data, bool view_only);
   void test(const hierarchy::DynamicTree& tree, bool view_only);
   void noteHidden(const hierarchy::DynamicTree::Node& node, std::size_t child, const BoxAnswer& answer);
-  void testShown(const WorldData& data);
+  void testAimedAt();
 
   WorldCullerSettings settings_;
   EyeSets sets_;
@@ -120,7 +120,7 @@ class WorldEye {
   std::vector<Box> hidden_boxes_;         // scratch for one drawFirst()
   std::vector<Entry> stack_;
   std::vector<BoxAnswer> answers_ = std::vector<BoxAnswer>(hierarchy::DynamicTree::kChildren);
-  std::vector<BoxAnswer> shown_answers_;
+  std::vector<BoxAnswer> aimed_at_answers_;
   std::vector<std::vector<ObjectId>> of_join_;  // by JoinId: members that are drawn
   std::vector<std::uint32_t> alone_;
   std::vector<Box> boxes_;
