@@ -119,6 +119,20 @@ struct Rasteriser::Impl {
     aims.aim(targets, map);
   }
 
+  // Draws surfaces in a space of their own. set_view: the view in it.
+  void draw(const SurfaceSet& set, const PixelView& set_view, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
+    aimAt(drawing.targets);
+    SurfaceMemory& memory = memories.of(set);
+    SurfaceDrawing next = drawing;
+    if (drawing.step == ViewStep::kSame && memory.buffer_view != views) {
+      next.step = ViewStep::kNext;  // this set is not yet drawn in the view
+    }
+    memory.buffer_view = views;
+    surfaces.draw(set, set_view, candidates, next, memory, map, parallel_for);
+    with_candidates = surfaces.stats();
+  }
+
   DepthTarget target() { return {reciprocal_depth.data(), settings.width, settings.height, stride}; }
 
   // Counts what the last draw() drew.
@@ -148,9 +162,13 @@ struct Rasteriser::Impl {
   // What is in the buffer: nothing at all, nothing but what the map knows of, or something else.
   enum class Contents : std::uint8_t { kNothing, kOfMap, kOther };
   Contents contents = Contents::kNothing;
+  std::uint64_t views = 0;  // since the first begin()
   WindingMap map;
   SurfaceAims aims;
-  SurfaceRaster surfaces, moving_surfaces;
+  SurfaceRaster surfaces;
+  SurfaceMemories memories;      // of sets that are drawn with candidates
+  SurfaceMemory of_moving;       // of the others, one after the other
+  SurfaceStats with_candidates;  // of the last draw() of surfaces with candidates
   BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
   std::vector<std::uint8_t> drawn;     // by band and polygon: some of the polygon was nearer than the buffer
@@ -168,6 +186,7 @@ void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
   impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
   fillBuffer(impl_->reciprocal_depth, kUncovered);
   impl_->contents = Impl::Contents::kNothing;
+  ++impl_->views;
   impl_->used.clear();
   impl_->stats = {};
 }
@@ -181,13 +200,12 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 }
 
 void Rasteriser::reserve(const SurfaceSet& surfaces) {
-  impl_->surfaces.reserve(surfaces);
+  impl_->surfaces.reserve(surfaces, impl_->memories.of(surfaces));
 }
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->aimAt(drawing.targets);
-  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->map, parallel_for);
+  impl_->draw(surfaces, impl_->view, candidates, drawing, parallel_for);
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
@@ -195,10 +213,9 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const Ob
   if (surfaces.surfaces == nullptr) {
     return {};
   }
-  impl_->aimAt(drawing.targets);
-  impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
-                       drawing, impl_->map, parallel_for);
-  return impl_->surfaces.stats();
+  impl_->draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates, drawing,
+              parallel_for);
+  return impl_->with_candidates;
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
@@ -213,9 +230,9 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
   alone.useful_only = false;
-  impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
-                              moving.surfaces->objects, alone, impl_->map, parallel_for);
-  return impl_->moving_surfaces.stats();
+  impl_->surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
+                       moving.surfaces->objects, alone, impl_->of_moving, impl_->map, parallel_for);
+  return impl_->surfaces.stats();
 }
 
 const RasterSettings& Rasteriser::settings() const {
@@ -225,7 +242,7 @@ DepthBufferView Rasteriser::depthBuffer() const {
   return {impl_->reciprocal_depth, impl_->settings.width, impl_->settings.height, impl_->stride};
 }
 const SurfaceStats& Rasteriser::surfaceStats() const {
-  return impl_->surfaces.stats();
+  return impl_->with_candidates;
 }
 const RasterStats& Rasteriser::stats() const {
   return impl_->stats;

@@ -70,7 +70,6 @@ class SurfaceView {
   // What was listed last.
   std::span<const PartImage> parts() const { return parts_; }
 
-
   PatchSide sideOf(std::uint32_t patch) const;
   // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths
   // yet.

@@ -364,34 +364,32 @@ void WorldEye::separate(const WorldData& data, std::uint32_t join) {
 
 // Returns the work.
 std::uint32_t WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                             SurfaceDrawing drawing) {
-  const std::uint32_t budget = drawing.budget;
+                             const SurfaceDrawing& drawing) {
   if (!drawing.useful_only || !data.joins.empty()) {
     takeCandidates(data, view, candidates);
   }
   if (drawing.useful_only) {
     takeUseful(data);
   }
-  drawJoins(data, drawing);
-  drawAlone(data, view, drawing);
-  return budget - drawing.budget;
+  return drawInOrder(data, view, drawing);
 }
 
-// Takes what it draws from drawing.budget, as does drawAlone().
-void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
-  for (std::uint32_t join = 0; join < data.joins.size() && drawing.budget > 0; ++join) {
-    if (of_join_[join].empty()) {
-      continue;
-    }
+// Appends the joins that have members to be drawn to in_order_.
+void WorldEye::listJoins(const WorldData& data, const View& view) {
+  for (std::uint32_t join = 0; join < data.joins.size(); ++join) {
     const WorldJoin& joined = data.joins[join].join;
-    MovingSurfaces placed{&joined.surfaces, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-      placed.scene_from_surfaces(axis, 3) = joined.origin[axis] - data.origin[axis];
+    View own = view;  // in the space of the join
+    own.eye = view.eye + data.origin - joined.origin;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const ObjectId object : of_join_[join]) {
+      nearest = std::min(nearest, nearestDepth(joined.surfaces.object_bounds[object.value], own));
     }
-    const SurfaceStats drawn = pyramid_.draw(placed, of_join_[join], drawing);
-    counts_.occluders += drawn.groups > 0 ? 1 : 0;
-    counts_.edges += drawn.edges;
-    drawing.budget -= std::min(drawing.budget, drawn.work);
+    if (!of_join_[join].empty()) {
+      const bool before_eye = !view.orthographic && !(nearest > view.near);
+      const double inverse = view.orthographic ? -nearest : 1.0 / nearest;
+      in_order_.push_back(
+          {join, true, before_eye ? std::numeric_limits<float>::infinity() : static_cast<float>(inverse)});
+    }
   }
 }
 
@@ -421,9 +419,8 @@ bool WorldEye::waits(const WorldData& data, std::uint32_t id, const SurfaceDrawi
   return past.born == data.instances[id].born && (past.drawn_in == frame_ || rests);
 }
 
-// Sets in_order_ to those of alone_ that are large enough and do not wait: in their order where what was
-// useful is drawn, else the nearest ones first.
-void WorldEye::listInOrder(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
+// Appends those of alone_ that are large enough and do not wait to in_order_.
+void WorldEye::listAlone(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
   std::erase_if(alone_, [&](std::uint32_t id) { return waits(data, id, drawing); });
   boxes_.clear();
   for (const std::uint32_t id : alone_) {
@@ -433,7 +430,6 @@ void WorldEye::listInOrder(const WorldData& data, const View& view, const Surfac
   const DepthBufferView buffer = pyramid_.depthBuffer();
   occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height, boxes_,
                           images_);
-  in_order_.clear();
   for (std::size_t i = 0; i < alone_.size(); ++i) {
     const occlusion::PixelBox& image = images_[i];
     const bool near = image.place == occlusion::BoxPlace::kUnbounded;
@@ -441,31 +437,51 @@ void WorldEye::listInOrder(const WorldData& data, const View& view, const Surfac
     // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
     const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
     if (image.place != occlusion::BoxPlace::kOutside && !open && (near || pixels >= drawing.min_pixels)) {
-      in_order_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
+      in_order_.push_back({alone_[i], false, near ? std::numeric_limits<float>::infinity() : image.nearest});
     }
-  }
-  if (!drawing.useful_only) {
-    std::sort(in_order_.begin(), in_order_.end(), [](const Candidate& a, const Candidate& b) {
-      return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
-    });
   }
 }
 
-void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  listInOrder(data, view, drawing);
+// Draws joins, and instances alone: in the order of alone_ where what was useful is drawn, else the nearest
+// ones first. Returns the work.
+std::uint32_t WorldEye::drawInOrder(const WorldData& data, const View& view, SurfaceDrawing drawing) {
+  const std::uint32_t budget = drawing.budget;
+  in_order_.clear();
+  listJoins(data, view);
+  listAlone(data, view, drawing);
+  if (!drawing.useful_only) {
+    std::sort(in_order_.begin(), in_order_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.nearest != b.nearest ? a.nearest > b.nearest : a.join != b.join ? a.join : a.number < b.number;
+    });
+  }
   for (const Candidate& candidate : in_order_) {
     if (drawing.budget == 0) {
       break;
     }
-    const SurfaceStats drawn =
-        pyramid_.draw(MovingSurfaces{&data.meshes[data.instances[candidate.id].mesh].mesh.surfaces,
-                                     data.originFromMesh(candidate.id)},
-                      drawing);
+    const SurfaceStats drawn = candidate.join ? drawJoin(data, candidate.number, drawing)
+                                              : drawAlone(data, candidate.number, drawing);
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
     counts_.edges += drawn.edges;
     drawing.budget -= std::min(drawing.budget, drawn.work);
-    account(data, candidate.id, drawn, drawing);
   }
+  return budget - drawing.budget;
+}
+
+SurfaceStats WorldEye::drawJoin(const WorldData& data, std::uint32_t join, const SurfaceDrawing& drawing) {
+  const WorldJoin& joined = data.joins[join].join;
+  MovingSurfaces placed{&joined.surfaces, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    placed.scene_from_surfaces(axis, 3) = joined.origin[axis] - data.origin[axis];
+  }
+  return pyramid_.draw(placed, of_join_[join], drawing);
+}
+
+SurfaceStats WorldEye::drawAlone(const WorldData& data, std::uint32_t id, const SurfaceDrawing& drawing) {
+  const MeshData& mesh = data.meshes[data.instances[id].mesh];
+  const SurfaceStats drawn =
+      pyramid_.draw(MovingSurfaces{&mesh.mesh.surfaces, data.originFromMesh(id)}, drawing);
+  account(data, id, drawn, drawing);
+  return drawn;
 }
 
 // What did not pay in a frame for which it was drawn because it had paid before is not drawn first in the
@@ -520,8 +536,7 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
   SurfaceDrawing drawing = settings_.drawing;
   drawing.step = ViewStep::kJump;
   const bool nothing_between = shown_.empty() && data.unbounded.empty();
-  drawJoins(data, drawing);
-  drawAlone(data, view, drawing);
+  drawInOrder(data, view, drawing);
   pyramid_.finish();
   const Visibility visibility = pyramid_.classify(box);
   return visibility == Visibility::kVisible && !nothing_between ? Visibility::kPartial : visibility;

@@ -50,9 +50,10 @@ class WorldEye {
     std::uint32_t node;
     bool view_only;  // nothing that was drawn hides any of it
   };
-  // An instance whose own surfaces may be drawn.
+  // A join, or an instance whose own surfaces may be drawn.
   struct Candidate {
-    std::uint32_t id;
+    std::uint32_t number;  // JoinId or InstanceId
+    bool join;
     float nearest;  // reciprocal depth
   };
   // What is known of an instance that was drawn by its own surfaces.
@@ -83,11 +84,13 @@ class WorldEye {
   void drawFound(const WorldData& data, const View& view, bool jumped, const IdBits& last_set);
   SurfaceDrawing whatIsLeft(ViewStep step) const;
   std::uint32_t draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                     SurfaceDrawing drawing);
-  void drawJoins(const WorldData& data, SurfaceDrawing& drawing);
-  void drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing);
+                     const SurfaceDrawing& drawing);
+  std::uint32_t drawInOrder(const WorldData& data, const View& view, SurfaceDrawing drawing);
+  SurfaceStats drawJoin(const WorldData& data, std::uint32_t join, const SurfaceDrawing& drawing);
+  SurfaceStats drawAlone(const WorldData& data, std::uint32_t id, const SurfaceDrawing& drawing);
+  void listJoins(const WorldData& data, const View& view);
   void takeUseful(const WorldData& data);
-  void listInOrder(const WorldData& data, const View& view, const SurfaceDrawing& drawing);
+  void listAlone(const WorldData& data, const View& view, const SurfaceDrawing& drawing);
   bool waits(const WorldData& data, std::uint32_t id, const SurfaceDrawing& drawing) const;
   void account(const WorldData& data, std::uint32_t id, const SurfaceStats& drawn,
                const SurfaceDrawing& drawing);
@@ -125,7 +128,7 @@ class WorldEye {
   std::vector<std::uint32_t> alone_;
   std::vector<Box> boxes_;
   std::vector<occlusion::PixelBox> images_;
-  std::vector<Candidate> in_order_;  // what is drawn of alone_
+  std::vector<Candidate> in_order_;
 };
 
 // On which side of a plane a box lies: 1 or -1 if all of it does, surely, otherwise 0. Plane(): 1.
