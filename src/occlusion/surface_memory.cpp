@@ -1,5 +1,9 @@
 #include "src/occlusion/surface_memory.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace sightline::occlusion {
 namespace {
 
@@ -48,17 +52,18 @@ void SurfaceMemory::beginView(const SurfaceSet& set, const Vec3d& eye_of_view, V
 }
 
 SurfaceMemory& SurfaceMemories::of(const SurfaceSet& set) {
-  ++uses_;
   auto found = std::find_if(sets_.begin(), sets_.end(),
-                            [&](const Known& known) { return known.memory.set_number == set.number; });
+                            [&](const Known& known) { return known.number == set.number; });
   if (found == sets_.end() && sets_.size() < kMostSets) {
-    found = sets_.emplace(sets_.end());
+    sets_.push_back({.memory = std::make_unique<SurfaceMemory>()});
+    found = sets_.end() - 1;
   } else if (found == sets_.end()) {
     found = std::min_element(sets_.begin(), sets_.end(),
                              [](const Known& a, const Known& b) { return a.last_use < b.last_use; });
   }
-  found->last_use = uses_;
-  return found->memory;
+  found->number = set.number;
+  found->last_use = ++uses_;
+  return *found->memory;
 }
 
 }  // namespace sightline::occlusion

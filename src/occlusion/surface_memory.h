@@ -2,10 +2,8 @@
 
 // What is known of a set of surfaces from the views in which it was drawn.
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
@@ -66,11 +64,12 @@ class SurfaceMemories {
   SurfaceMemory& of(const SurfaceSet& set);
 
  private:
-  static constexpr std::size_t kMostSets = 64;
+  static constexpr std::size_t kMostSets = 256;
 
   struct Known {
+    SurfaceSetNumber number;
     std::uint64_t last_use = 0;
-    SurfaceMemory memory;
+    std::unique_ptr<SurfaceMemory> memory;
   };
   std::vector<Known> sets_;
   std::uint64_t uses_ = 0;
