@@ -735,7 +735,7 @@ TEST(SurfaceTargets, AreOfAllSetsThatAreDrawnWhereverTheseAre) {
   EXPECT_EQ(groupsAt(-5.0, -10.0), 0u);
   drawing.targets = {};
   EXPECT_EQ(groupsAt(5.0, -10.0), 1u) << "without targets everything counts";
-  EXPECT_EQ(groupsAt(5.0, -11.0), 0u) << "but what is behind it";
+  EXPECT_EQ(groupsAt(10.0, -20.0), 0u) << "but what is behind it";
 }
 
 TEST(SurfaceTargets, EachOfSeveralSetsRemembersWhatWasOfUse) {

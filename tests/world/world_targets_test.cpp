@@ -14,7 +14,7 @@ namespace {
 
 using namespace world_story;
 
-Mat4 boxAt(const Vec3d& low, const Vec3d& size) {
+Mat4 cuboidAt(const Vec3d& low, const Vec3d& size) {
   Mat4 m;
   for (int axis = 0; axis < 3; ++axis) {
     m(axis, axis) = size[axis];
@@ -30,13 +30,13 @@ std::vector<InstanceId> visibleOf(const WorldCuller& culler) {
 // A wall with crates behind it, and posts before it, which hide no crate that the wall does not hide.
 struct PostsAndWall {
   Story story{allShapes()};
-  InstanceId wall = story.add(0, boxAt({-32, -8, -33}, {64, 24, 1}));
+  InstanceId wall = story.add(0, cuboidAt({-32, -8, -33}, {64, 24, 1}));
   std::vector<InstanceId> posts, crates;
 
   PostsAndWall() {
     for (int i = 0; i < 24; ++i) {
-      posts.push_back(story.add(0, boxAt({i - 12.0, -2, -15.0 - 0.25 * (i % 3)}, {0.5, 3, 0.5})));
-      crates.push_back(story.add(0, boxAt({0.5 * i - 6.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
+      posts.push_back(story.add(0, cuboidAt({i - 12.0, -2, -15.0 - 0.25 * (i % 3)}, {0.5, 3, 0.5})));
+      crates.push_back(story.add(0, cuboidAt({0.5 * i - 6.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
     }
   }
   static View view(int frame) { return viewFrom({0.015625 * frame, 1.5, 0}, {0, 0, -1}); }
@@ -64,8 +64,8 @@ TEST(WorldTargets, WhatHidesNothingElseIsNotDrawnAndTheSameIsKept) {
 TEST(WorldTargets, WhatMovesBehindAnotherThingIsSoonHiddenByThat) {
   // The second wall has hidden nothing so far.
   PostsAndWall scene;
-  const InstanceId other = scene.story.add(0, boxAt({-6, -8, -11}, {5, 24, 0.5}));
-  const InstanceId crate = scene.story.add(0, boxAt({8, 0, -50}, {0.5, 0.5, 0.5}));
+  const InstanceId other = scene.story.add(0, cuboidAt({-6, -8, -11}, {5, 24, 0.5}));
+  const InstanceId crate = scene.story.add(0, cuboidAt({8, 0, -50}, {0.5, 0.5, 0.5}));
   WorldCuller culler;
   int frame = 0;
   for (; frame < 30; ++frame) {
@@ -73,7 +73,7 @@ TEST(WorldTargets, WhatMovesBehindAnotherThingIsSoonHiddenByThat) {
   }
   EXPECT_TRUE(keeps(culler, other));
   EXPECT_FALSE(keeps(culler, crate));
-  scene.story.move(crate, boxAt({-4, 0, -13}, {0.5, 0.5, 0.5}));
+  scene.story.move(crate, cuboidAt({-4, 0, -13}, {0.5, 0.5, 0.5}));
   int frames = 0;
   do {
     culler.cull(scene.story.world, PostsAndWall::view(frame++));
@@ -92,9 +92,9 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
   for (int i = 0; i < 32; ++i) {
     const double side = i % 2 == 0 ? -16.0 : 0.0;
     std::vector<InstanceId>& join = members[static_cast<std::size_t>(i % 2)];
-    join.push_back(story.add(0, boxAt({side + i / 2, -8, -33}, {1, 24, 1})));
-    join.push_back(story.add(0, boxAt({side + i / 2 + 0.25, -2, -16}, {0.5, 3, 0.5})));
-    story.add(0, boxAt({0.5 * i - 8.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25}));
+    join.push_back(story.add(0, cuboidAt({side + i / 2, -8, -33}, {1, 24, 1})));
+    join.push_back(story.add(0, cuboidAt({side + i / 2 + 0.25, -2, -16}, {0.5, 3, 0.5})));
+    story.add(0, cuboidAt({0.5 * i - 8.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25}));
   }
   for (const std::vector<InstanceId>& join : members) {
     story.world.use(story.world.prepareJoin(join));
