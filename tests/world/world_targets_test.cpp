@@ -30,7 +30,7 @@ std::vector<InstanceId> visibleOf(const WorldCuller& culler) {
 // A wall with crates behind it, and posts before it, which hide no crate that the wall does not hide.
 struct PostsAndWall {
   Story story{allShapes()};
-  InstanceId wall = story.add(0, cuboidAt({-32, -8, -33}, {64, 24, 1}));
+  InstanceId wall = story.add(0, cuboidAt({-16, -8, -33}, {32, 24, 1}));
   std::vector<InstanceId> posts, crates;
 
   PostsAndWall() {
@@ -89,12 +89,13 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
   // Two walls of panels, each a join, before each a row of posts in the same join.
   Story story(allShapes());
   std::vector<std::vector<InstanceId>> members(2);
+  std::vector<InstanceId> crates;
   for (int i = 0; i < 32; ++i) {
     const double side = i % 2 == 0 ? -16.0 : 0.0;
     std::vector<InstanceId>& join = members[static_cast<std::size_t>(i % 2)];
     join.push_back(story.add(0, cuboidAt({side + i / 2, -8, -33}, {1, 24, 1})));
     join.push_back(story.add(0, cuboidAt({side + i / 2 + 0.25, -2, -16}, {0.5, 3, 0.5})));
-    story.add(0, cuboidAt({0.5 * i - 8.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25}));
+    crates.push_back(story.add(0, cuboidAt({0.5 * i - 8.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
   }
   for (const std::vector<InstanceId>& join : members) {
     story.world.use(story.world.prepareJoin(join));
@@ -105,8 +106,9 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
     WorldCuller anew;
     anew.cull(story.world, PostsAndWall::view(frame));
     culler.cull(story.world, PostsAndWall::view(frame));
-    EXPECT_EQ(visibleOf(culler), visibleOf(anew)) << frame;
-    EXPECT_EQ(culler.visible().size(), 64u) << frame;
+    for (const InstanceId crate : crates) {
+      EXPECT_FALSE(keeps(culler, crate)) << frame;
+    }
     if (frame >= 20) {
       edges += culler.stats().edges;
       edges_anew += anew.stats().edges;
@@ -184,9 +186,13 @@ TEST_F(HiddenBoxesTest, AreNotThoseOfAnInstanceThatGotTheIdOfAnother) {
 }
 
 TEST_F(HiddenBoxesTest, AreOthersInEachTurnWhereThereAreMany) {
-  hidden_.begin(data_);
+  std::vector<std::uint32_t> ids;
   for (int i = 0; i < 100; ++i) {
-    hidden_.addInstance(add(10.0 * i));
+    ids.push_back(add(10.0 * i));
+  }
+  hidden_.begin(data_);
+  for (const std::uint32_t id : ids) {
+    hidden_.addInstance(id);
   }
   EXPECT_EQ(middles(1000).size(), 100u);
   const std::vector<double> first = middles(10, 0), second = middles(10, 1);
