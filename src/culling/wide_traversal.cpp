@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/culling/hiding_aims.h"
+
 namespace sightline::culling {
 
 using hierarchy::WideNode;
@@ -134,10 +136,8 @@ void WideTraversal::testAgain(const DepthPyramid& buffer, const TraversalOptions
 }
 
 void WideTraversal::appendHidden(std::size_t most, std::size_t turn, std::vector<Box>& boxes) const {
-  const std::size_t all = hidden_children_.size(), count = std::min(most, all);
-  for (std::size_t i = 0; i < count; ++i) {
-    boxes.push_back(wide_.boxes[hidden_children_[(i * all / count + turn) % all].value]);
-  }
+  spreadOver(hidden_children_.size(), most, turn,
+             [&](std::size_t i) { boxes.push_back(wide_.boxes[hidden_children_[i].value]); });
 }
 
 std::vector<std::uint32_t> WideTraversal::childrenByObject(const hierarchy::WideHierarchy& wide,

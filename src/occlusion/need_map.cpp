@@ -83,8 +83,9 @@ constexpr std::int32_t kSquare = SquareDepths::kSize;
 }  // namespace
 
 void NeedMap::clear(const DepthTarget& target) {
+  columns_ = squaresIn(target.width);
   rows_ = squaresIn(target.height);
-  stride_ = squaresIn(target.width) + SquareDepths::kVector;
+  stride_ = columns_ + SquareDepths::kVector;
   const std::size_t count = at(rows_);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   farthest_.assign(count, kInfinity);
@@ -105,9 +106,15 @@ void NeedMap::add(const PixelRectangle& rectangle, float nearest) {
 }
 
 void NeedMap::look(const SquareDepths& target) {
-  const auto columns = static_cast<std::size_t>(stride_ - SquareDepths::kVector);
-  for (std::int32_t row = 0; row < rows_; ++row) {
-    HWY_DYNAMIC_DISPATCH(lookAtRow)(target.ofRow(row), nearestOf(row), columns, open_.data() + at(row));
+  look(target, {0, 0, columns_ * kSquare, rows_ * kSquare});
+}
+
+void NeedMap::look(const SquareDepths& target, const PixelRectangle& where) {
+  const std::int32_t first = where.x0 / kSquare, end_row = (where.y1 - 1) / kSquare + 1;
+  const auto columns = static_cast<std::size_t>((where.x1 - 1) / kSquare + 1 - first);
+  for (std::int32_t row = where.y0 / kSquare; row < end_row && !where.empty(); ++row) {
+    HWY_DYNAMIC_DISPATCH(lookAtRow)
+    (target.ofRow(row) + first, nearestOf(row) + first, columns, open_.data() + at(row) + first);
   }
 }
 

@@ -18,8 +18,10 @@ class NeedMap {
   void clear(const DepthTarget& target);
   // A box that lies in these pixels and is nowhere nearer than this reciprocal depth is to be hidden.
   void add(const PixelRectangle& rectangle, float nearest);
-  // Finds out what the target hides by now. Call this before pixels(), and after the target has come nearer.
+  // Finds out what the target hides by now. Call this before pixels(), and after the target has come nearer:
+  // then for the pixels where it has, at least.
   void look(const SquareDepths& target);
+  void look(const SquareDepths& target, const PixelRectangle& where);
 
   // An upper bound, but for rounding, of the pixels of a rectangle in which a surface with these depths may
   // hide something of a box.
@@ -40,8 +42,8 @@ class NeedMap {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(stride_);
   }
 
-  std::int32_t rows_ = 0;
-  std::int32_t stride_ = 0;  // squares of a row, and room for a vector
+  std::int32_t columns_ = 0, rows_ = 0;
+  std::int32_t stride_ = 0;  // columns_, and room for a vector
   std::vector<float> farthest_, nearest_;
   // A surface is of use in a square only where it is nearer than this: than the farthest box and the
   // farthest pixel there. Infinite where the farthest pixel hides even the nearest box.

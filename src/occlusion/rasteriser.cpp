@@ -8,14 +8,33 @@
 #include "sightline/occlusion/rasteriser.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/occlusion/polygon_builder.h"
 #include "src/occlusion/raster_rows.h"
+#include "src/occlusion/surface_aims.h"
 #include "src/occlusion/surface_raster.h"
 
 namespace sightline {
 
 using namespace occlusion;
+
+namespace {
+
+// The box of surfaces that move, in scene space, up to rounding.
+Box boxInScene(const MovingSurfaces& moving) {
+  const Mat4& m = moving.scene_from_surfaces;
+  const Box& own = moving.surfaces->bounds;
+  const Vec3d middle = transformPoint(m, center(own)), half = (Vec3d(own.max) - Vec3d(own.min)) * 0.5;
+  Vec3d reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    reach[axis] =
+        std::abs(m(axis, 0)) * half.x + std::abs(m(axis, 1)) * half.y + std::abs(m(axis, 2)) * half.z;
+  }
+  return {Vec3f(middle - reach), Vec3f(middle + reach)};
+}
+
+}  // namespace
 
 struct Rasteriser::Impl {
   // A thread draws at least so many rows together.
@@ -85,6 +104,35 @@ struct Rasteriser::Impl {
     count();
   }
 
+  // Prepares the map for drawing surfaces. It looks at the buffer again only where others than surfaces were
+  // drawn into it.
+  void aimAt(std::span<const Box> targets) {
+    if (contents == Contents::kNothing) {
+      map.begin(target(), kUncovered);
+    } else if (contents == Contents::kOther) {
+      map.begin(target());
+    }
+    if (contents != Contents::kOfMap) {
+      contents = Contents::kOfMap;
+      aims.begin(view, target());
+    }
+    aims.aim(targets, map);
+  }
+
+  // Draws surfaces in a space of their own. set_view: the view in it.
+  void draw(const SurfaceSet& set, const PixelView& set_view, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
+    aimAt(drawing.targets);
+    SurfaceMemory& memory = memories.of(set);
+    SurfaceDrawing next = drawing;
+    if (drawing.step == ViewStep::kSame && memory.buffer_view != views) {
+      next.step = ViewStep::kNext;  // this set is not yet drawn in the view
+    }
+    memory.buffer_view = views;
+    surfaces.draw(set, set_view, candidates, next, memory, map, parallel_for);
+    with_candidates = surfaces.stats();
+  }
+
   DepthTarget target() { return {reciprocal_depth.data(), settings.width, settings.height, stride}; }
 
   // Counts what the last draw() drew.
@@ -111,7 +159,16 @@ struct Rasteriser::Impl {
   std::vector<float> reciprocal_depth;
   PixelView view;
   PolygonBuilder builder;
-  SurfaceRaster surfaces, moving_surfaces;
+  // What is in the buffer: nothing at all, nothing but what the map knows of, or something else.
+  enum class Contents : std::uint8_t { kNothing, kOfMap, kOther };
+  Contents contents = Contents::kNothing;
+  std::uint64_t views = 0;  // since the first begin()
+  WindingMap map;
+  SurfaceAims aims;
+  SurfaceRaster surfaces;
+  SurfaceMemories memories;      // of sets that are drawn with candidates
+  SurfaceMemory of_moving;       // of the others, one after the other
+  SurfaceStats with_candidates;  // of the last draw() of surfaces with candidates
   BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
   std::vector<std::uint8_t> drawn;     // by band and polygon: some of the polygon was nearer than the buffer
@@ -128,6 +185,8 @@ Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
   impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
   fillBuffer(impl_->reciprocal_depth, kUncovered);
+  impl_->contents = Impl::Contents::kNothing;
+  ++impl_->views;
   impl_->used.clear();
   impl_->stats = {};
 }
@@ -136,16 +195,17 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
                       const ParallelFor& parallel_for) {
   if (!impl_->view.viewers.several()) {
     impl_->draw(set, chosen, parallel_for);
+    impl_->contents = Impl::Contents::kOther;
   }
 }
 
 void Rasteriser::reserve(const SurfaceSet& surfaces) {
-  impl_->surfaces.reserve(surfaces);
+  impl_->surfaces.reserve(surfaces, impl_->memories.of(surfaces));
 }
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target(), parallel_for);
+  impl_->draw(surfaces, impl_->view, candidates, drawing, parallel_for);
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
@@ -153,9 +213,9 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const Ob
   if (surfaces.surfaces == nullptr) {
     return {};
   }
-  impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
-                       drawing, impl_->target(), parallel_for);
-  return impl_->surfaces.stats();
+  impl_->draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates, drawing,
+              parallel_for);
+  return impl_->with_candidates;
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
@@ -163,11 +223,16 @@ SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing
   if (moving.surfaces == nullptr) {
     return {};
   }
+  impl_->aimAt(drawing.targets);
+  if (!impl_->aims.mayUse(boxInScene(moving), impl_->map)) {
+    return {};
+  }
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
-  impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
-                              moving.surfaces->objects, alone, impl_->target(), parallel_for);
-  return impl_->moving_surfaces.stats();
+  alone.useful_only = false;
+  impl_->surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
+                       moving.surfaces->objects, alone, impl_->of_moving, impl_->map, parallel_for);
+  return impl_->surfaces.stats();
 }
 
 const RasterSettings& Rasteriser::settings() const {
@@ -177,7 +242,7 @@ DepthBufferView Rasteriser::depthBuffer() const {
   return {impl_->reciprocal_depth, impl_->settings.width, impl_->settings.height, impl_->stride};
 }
 const SurfaceStats& Rasteriser::surfaceStats() const {
-  return impl_->surfaces.stats();
+  return impl_->with_candidates;
 }
 const RasterStats& Rasteriser::stats() const {
   return impl_->stats;

@@ -109,6 +109,11 @@ void SquareDepths::look(const DepthTarget& target) {
   HWY_DYNAMIC_DISPATCH(lookAtAll)(target, least_.data(), stride_);
 }
 
+void SquareDepths::fill(const DepthTarget& target, float value) {
+  stride_ = squaresIn(target.width) + kVector;
+  least_.assign(at(squaresIn(target.height)), value);
+}
+
 bool SquareDepths::allNearer(const DepthTarget& target, const PixelRectangle& rectangle, float than) const {
   return HWY_DYNAMIC_DISPATCH(allNearer)(target, least_.data(), stride_, rectangle, than);
 }

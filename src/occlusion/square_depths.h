@@ -18,6 +18,8 @@ class SquareDepths {
 
   // Looks at all of a target.
   void look(const DepthTarget& target);
+  // The same of a target of which all pixels have this value.
+  void fill(const DepthTarget& target, float value);
   // Whether all of a rectangle is nearer than this reciprocal depth. It lies within the target, which is the
   // one that was looked at last.
   bool allNearer(const DepthTarget& target, const PixelRectangle& rectangle, float than) const;

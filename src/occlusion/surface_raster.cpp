@@ -7,14 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "src/occlusion/surface_aims.h"
+
 namespace sightline::occlusion {
 namespace {
 
-// Pixels that a group must change for each unit of work, or it rests.
-constexpr double kMinGain = 0.3;
-// It has to change so many where only pixels count in which something is to be hidden: these are few, but
-// worth more.
-constexpr double kMinNeededGain = 0.075;
 constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
 // What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest
 // views ends where the eye has travelled this fraction of the surface's distance for each view of the rest.
@@ -24,8 +21,6 @@ constexpr double kTravelOfView = 1.0 / 400.0;
 
 // Sums of a sound set stay far below. One that reaches this belongs to no group that is drawn.
 constexpr std::int32_t kMostSum = (1 << 30) + 1;
-
-constexpr std::uint32_t kLastView = 0xffffffffu;  // number of a view; after it they begin again
 
 // Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
 // is noticed from then on.
@@ -52,29 +47,24 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 
 }  // namespace
 
-void SurfaceRaster::reserve(const SurfaceSet& set) {
+void SurfaceRaster::reserve(const SurfaceSet& set, SurfaceMemory& memory) {
   sums_.require(set.chains.size());
-  facings_.require(set.patches.size());
-  patch_rests_.require(set.patches.size());
-  part_rests_.require(set.parts.size());
-  place_in_useful_.require(set.parts.size());
+  memory.reserve(set);
 }
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-                         const SurfaceDrawing& drawing, const DepthTarget& target,
+                         const SurfaceDrawing& drawing, SurfaceMemory& memory, WindingMap& map,
                          const ParallelFor& parallel_for) {
   drawing_ = drawing;
   parallel_for_ = &parallel_for;
+  map_ = &map;
   winding_ = view.mirrored ? -1 : 1;
-  start(set, view.eye, drawing.step);
-  view_.begin(set, view, drawing.min_pixels, target);
-  const bool all = drawing.targets.empty();
-  if (!all) {
-    view_.setNeeds(drawing.targets, needs_);
-  }
-  map_.begin(target, all ? nullptr : &needs_);
-  chains_.begin(set, view, view_.clipDepth(), map_.buffer());
-  if (drawing.useful_only) {
+  memory_ = &memory;
+  start(set);
+  memory.beginView(set, view.eye, drawing.step);
+  view_.begin(set, view, drawing.min_pixels, map.target());
+  chains_.begin(set, view, view_.clipDepth(), map.buffer());
+  if (drawing_.useful_only) {
     listUseful();
   } else {
     view_.listParts(candidates);
@@ -83,7 +73,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
     if (!withinBudget()) {
       break;
     }
-    if (const std::uint32_t pixels = map_.wanted(part.rectangle, part.nearest); pixels > 0) {
+    if (const std::uint32_t pixels = map.wanted(part.rectangle, part.nearest); pixels > 0) {
       addPart(part, pixels);
       if (waiting_work_ > kFirstRound + work_ / 2) {
         drawGroups();
@@ -96,63 +86,35 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   stats_.complete = work_ < drawing.budget;
 }
 
-// What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are
-// written down are smaller than those to come.
-void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step) {
+void SurfaceRaster::start(const SurfaceSet& set) {
   stats_ = {};
   work_ = waiting_work_ = 0;
   rested_ = 0;
-  reserve(set);
-  const double moved = length(eye - eye_);
-  const bool anew = set_number_ != set.number || view_number_ == kLastView || !std::isfinite(travel_ + moved);
-  if (view_number_ == kLastView) {
-    patch_rests_.clear();
-    part_rests_.clear();
-    facings_.clear();
-    view_number_ = 0;
-  }
-  if (step != ViewStep::kSame || anew) {
-    ++view_number_;
-    for (const UsefulPart& part : useful_) {
-      place_in_useful_[part.part] = 0;
-    }
-    useful_before_.swap(useful_);
-    useful_.clear();
-  }
-  if (anew) {
-    useful_before_.clear();
-    first_of_set_ = view_number_;
-    travel_ = 0.0;
-  } else if (moved > 0.0) {
-    // Rounded up: however short the steps are, none is lost.
-    travel_ = std::nextafter(travel_ + moved, std::numeric_limits<double>::infinity());
-  }
-  first_view_ = step == ViewStep::kJump || anew ? view_number_ : first_view_;
   set_ = &set;
-  set_number_ = set.number;
-  eye_ = eye;
+  sums_.require(set.chains.size());
 }
 
 // Whether something is left out in this view.
-bool SurfaceRaster::rests(const Rest& rest) const {
-  const std::uint32_t age = view_number_ - rest.since;
-  return !drawing_.draw_resting && rest.since >= first_view_ && age > 0 && age <= rest.length &&
-         (age <= kSteadyRest || (!view_.view().orthographic && travel_ <= rest.travel));
+bool SurfaceRaster::rests(const SurfaceMemory::Rest& rest) const {
+  const std::uint32_t age = memory_->view_number - rest.since;
+  return !drawing_.draw_resting && rest.since >= memory_->first_view && age > 0 && age <= rest.length &&
+         (age <= kSteadyRest || (!view_.view().orthographic && memory_->travel <= rest.travel));
 }
 
 // Whether a group is not drawn now, whatever it covers.
-bool SurfaceRaster::leavesOut(const Rest& rest) const {
-  return rest.drawn_in == view_number_ || (drawing_.useful_only && rest.paid_in + 1 != view_number_) ||
-         rests(rest);
+bool SurfaceRaster::leavesOut(const SurfaceMemory::Rest& rest) const {
+  return rest.drawn_in == memory_->view_number ||
+         (drawing_.useful_only && rest.paid_in + 1 != memory_->view_number) || rests(rest);
 }
 
 // Lists the parts of which something paid in the view before, the most useful ones first.
 void SurfaceRaster::listUseful() {
-  std::sort(useful_before_.begin(), useful_before_.end(), [](const UsefulPart& a, const UsefulPart& b) {
-    return a.gain != b.gain ? a.gain > b.gain : a.part < b.part;
-  });
+  std::sort(memory_->useful_before.begin(), memory_->useful_before.end(),
+            [](const SurfaceMemory::UsefulPart& a, const SurfaceMemory::UsefulPart& b) {
+              return a.gain != b.gain ? a.gain > b.gain : a.part < b.part;
+            });
   useful_parts_.clear();
-  for (const UsefulPart& useful : useful_before_) {
+  for (const SurfaceMemory::UsefulPart& useful : memory_->useful_before) {
     useful_parts_.push_back(useful.part);
   }
   view_.listParts(useful_parts_);
@@ -165,13 +127,14 @@ bool SurfaceRaster::pays(std::uint32_t pixels, std::uint32_t edges) const {
 
 // What is known of a patch is found again only when the eye has moved. In an orthographic view it depends on
 // the direction instead.
-const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
-  Facing& facing = facings_[patch];
-  if (view_.view().orthographic || facing.since < first_of_set_ || !(travel_ < facing.travel)) {
+const SurfaceMemory::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
+  SurfaceMemory::Facing& facing = memory_->facings[patch];
+  if (view_.view().orthographic || facing.since < memory_->first_of_set ||
+      !(memory_->travel < facing.travel)) {
     const PatchSide found = view_.sideOf(patch);
     constexpr double kRoundDown = 1.0 - std::numeric_limits<double>::epsilon();
-    facing = {view_number_, found.side < 0 && !set_->patches[patch].double_sided,
-              static_cast<std::int8_t>(found.side), (travel_ + found.travel) * kRoundDown};
+    facing = {memory_->view_number, found.side < 0 && !set_->patches[patch].double_sided,
+              static_cast<std::int8_t>(found.side), (memory_->travel + found.travel) * kRoundDown};
   }
   return facing;
 }
@@ -180,11 +143,11 @@ const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
 void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   const SurfacePart& part = set_->parts[image.part];
   part_ = image.part;
-  part_distance_ = length(center(set_->part_bounds[image.part]) - eye_);
+  part_distance_ = length(center(set_->part_bounds[image.part]) - memory_->eye);
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
   bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
-                  !leavesOut(part_rests_[image.part]);
+                  !leavesOut(memory_->part_rests[image.part]);
   listPatches(part, together);
   // What adjoins the part is drawn for the seams alone, and is not counted.
   const std::uint64_t patch_pixels = countWanted();
@@ -197,7 +160,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     PatchImage& patch = shown_[i];
     const SurfacePatch& source = set_->patches[patch.patch];
-    const bool alone = !leavesOut(patch_rests_[patch.patch]) &&
+    const bool alone = !leavesOut(memory_->patch_rests[patch.patch]) &&
                        patch.rectangle.area() >= drawing_.min_patch_pixels &&
                        pays(wanted_[i], source.edge_count);
     if (wanted_[i] == 0 || !(together || alone)) {
@@ -214,7 +177,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
     if (alone && withinBudget()) {
-      addPatch(patch, patch_rests_[patch.patch]);
+      addPatch(patch, memory_->patch_rests[patch.patch]);
     }
   }
   if (together && shown > 0) {
@@ -226,7 +189,8 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
     }
   }
   if (together && shown > 1 && withinBudget()) {
-    addTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
+    addTogether(view_.clusters().subspan(first_cluster), patches_, rectangle,
+                memory_->part_rests[image.part]);
   }
 }
 
@@ -235,10 +199,10 @@ std::uint64_t SurfaceRaster::countWanted() {
   wanted_.clear();
   std::uint64_t sum = 0;
   for (PatchImage& patch : shown_) {
-    std::uint32_t pixels = map_.wanted(patch.rectangle, patch.nearest);
+    std::uint32_t pixels = map_->wanted(patch.rectangle, patch.nearest);
     if (pixels > 0 && patch.sign != 0) {
       view_.setDepth(patch);
-      pixels = std::min(pixels, map_.wanted(patch.rectangle, patch.depth));
+      pixels = std::min(pixels, map_->wanted(patch.rectangle, patch.depth));
     }
     wanted_.push_back(pixels);
     stats_.patches += pixels > 0 ? 1 : 0;
@@ -251,8 +215,8 @@ std::uint64_t SurfaceRaster::countWanted() {
 void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
   sides_.clear();
   for (std::uint32_t patch = part.first_patch; patch < part.first_patch + part.patch_count; ++patch) {
-    if (together || !leavesOut(patch_rests_[patch])) {
-      const Facing& facing = facingOf(patch);
+    if (together || !leavesOut(memory_->patch_rests[patch])) {
+      const SurfaceMemory::Facing& facing = facingOf(patch);
       if (!facing.away) {
         sides_.push_back({patch, facing.side});
       }
@@ -262,7 +226,7 @@ void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
 }
 
 // Adds a patch alone, as one group.
-void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
+void SurfaceRaster::addPatch(const PatchImage& patch, SurfaceMemory::Rest& rest) {
   const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
   if (!patch.flat) {
     addTogether(clusters, {}, patch.rectangle, rest);
@@ -281,7 +245,7 @@ void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
 }
 
 void SurfaceRaster::addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
-                                const PixelRectangle& rectangle, Rest& rest) {
+                                const PixelRectangle& rectangle, SurfaceMemory::Rest& rest) {
   beginGroup();
   addBoundary(clusters, patches);
   for (const PatchImage& image : patches) {
@@ -304,7 +268,7 @@ void SurfaceRaster::beginGroup() {
   groups_.push_back(group);
 }
 
-void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest) {
+void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, SurfaceMemory::Rest& rest) {
   Group& group = groups_.back();
   group.edges = chains_.endGroup(boundary_);
   group.chain_count = static_cast<std::uint32_t>(boundary_.size()) - group.first_chain;
@@ -336,7 +300,7 @@ void SurfaceRaster::drawGroups() {
                       std::span(depths_).subspan(group.first_depth, group.depth_count), group.flat});
   }
   gains_.resize(std::max(gains_.size(), groups_.size()));
-  map_.draw(drawn_, chains_.edges(), gains_, *parallel_for_);
+  map_->draw(drawn_, chains_.edges(), gains_, *parallel_for_);
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const std::uint64_t work = workOf(groups_[i].edges, gains_[i].tiles);
     account(groups_[i], gains_[i], work);
@@ -399,16 +363,15 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
 // one; what did not pay otherwise rests.
 void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::uint64_t work) {
   stats_.gain += gain.nearer;
-  group.rest->drawn_in = view_number_;
-  const double least = drawing_.targets.empty() ? kMinGain : kMinNeededGain;
-  if (!(gain.nearer < least * static_cast<double>(work))) {
-    *group.rest = {.drawn_in = view_number_, .paid_in = view_number_};
-    std::uint32_t& place = place_in_useful_[group.part];
+  group.rest->drawn_in = memory_->view_number;
+  if (!(gain.nearer < leastGain(!drawing_.targets.empty()) * static_cast<double>(work))) {
+    *group.rest = {.drawn_in = memory_->view_number, .paid_in = memory_->view_number};
+    std::uint32_t& place = memory_->place_in_useful[group.part];
     if (place == 0) {
-      useful_.push_back({group.part, 0});
-      place = static_cast<std::uint32_t>(useful_.size());
+      memory_->useful.push_back({group.part, 0});
+      place = static_cast<std::uint32_t>(memory_->useful.size());
     }
-    useful_[place - 1].gain += gain.nearer;
+    memory_->useful[place - 1].gain += gain.nearer;
   } else if (!drawing_.useful_only) {
     rest(group);
   }
@@ -417,13 +380,13 @@ void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::ui
 // A group that rests again does so twice as long as the last time. Groups that begin to rest in the same view
 // come back in different ones, or drawing them all would make one view slow.
 void SurfaceRaster::rest(const Group& group) {
-  Rest& rest = *group.rest;
-  const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
-  const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
+  SurfaceMemory::Rest& rest = *group.rest;
+  const std::uint32_t first = memory_->view_number == memory_->first_view ? 1 : 0;
+  const std::uint32_t last = rest.since >= memory_->first_view ? rest.length : first;
   const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
-  rest.since = view_number_;
+  rest.since = memory_->view_number;
   rest.length = length + rested_++ % (length / 2 + 1);
-  rest.travel = travel_ + kTravelOfView * (length + 1) * group.distance;
+  rest.travel = memory_->travel + kTravelOfView * (length + 1) * group.distance;
 }
 
 }  // namespace sightline::occlusion

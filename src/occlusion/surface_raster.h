@@ -11,6 +11,7 @@
 #include "sightline/occlusion/rasteriser.h"
 #include "src/base/sparse_array.h"
 #include "src/occlusion/chain_edges.h"
+#include "src/occlusion/surface_memory.h"
 #include "src/occlusion/surface_view.h"
 #include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
@@ -19,11 +20,12 @@ namespace sightline::occlusion {
 
 class SurfaceRaster {
  public:
-  // Makes room for what is kept of a set from view to view, so that the first draw() need not. Of smaller
-  // sets nothing is kept any more.
-  void reserve(const SurfaceSet& set);
+  // Makes room for a set, so that the first draw() of it need not.
+  void reserve(const SurfaceSet& set, SurfaceMemory& memory);
+  // map: of the view's buffer, aimed at the drawing's targets. view: in the space of the set.
   void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing, const DepthTarget& target, const ParallelFor& parallel_for);
+            const SurfaceDrawing& drawing, SurfaceMemory& memory, WindingMap& map,
+            const ParallelFor& parallel_for);
   const SurfaceStats& stats() const { return stats_; }
 
  private:
@@ -32,28 +34,6 @@ class SurfaceRaster {
   struct ChainSum {
     std::uint32_t group = 0;
     std::int32_t value = 0;
-  };
-
-  // The side of a patch that the eye is on, as it was found in a view.
-  struct Facing {
-    std::uint32_t since = 0;  // number of the view
-    bool away = false;     // a back shows, of which nothing is drawn, so that the patch need not be looked at
-    std::int8_t side = 0;  // as in PatchSide
-    double travel = 0.0;   // it is the same at least until travel_ is that much
-  };
-
-  // What is not worth its cost is left out for some views; what paid is drawn first in the next one.
-  struct Rest {
-    std::uint32_t since = 0;                  // number of the view in which that was found
-    std::uint32_t length = 0;                 // views after that one, at most
-    double travel = 0.0;                      // where a long rest ends: what travel_ is then
-    std::uint32_t drawn_in = 0, paid_in = 0;  // numbers of the last view in which it was drawn, and paid
-  };
-
-  // A part of which something paid in a view.
-  struct UsefulPart {
-    std::uint32_t part = 0;
-    std::uint64_t gain = 0;  // of all that paid
   };
 
   // A group that waits for being drawn.
@@ -65,23 +45,23 @@ class SurfaceRaster {
     bool flat = false;
     double distance = 0.0;  // from the eye, about, metres
     std::uint32_t part = 0;
-    Rest* rest = nullptr;  // its own
+    SurfaceMemory::Rest* rest = nullptr;  // its own
   };
 
-  void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
-  bool rests(const Rest& rest) const;
-  bool leavesOut(const Rest& rest) const;
+  void start(const SurfaceSet& set);
+  bool rests(const SurfaceMemory::Rest& rest) const;
+  bool leavesOut(const SurfaceMemory::Rest& rest) const;
   bool pays(std::uint32_t pixels, std::uint32_t edges) const;
   void listUseful();
-  const Facing& facingOf(std::uint32_t patch);
+  const SurfaceMemory::Facing& facingOf(std::uint32_t patch);
   void addPart(const PartImage& part, std::uint32_t pixels);
   void listPatches(const SurfacePart& part, bool together);
   std::uint64_t countWanted();
-  void addPatch(const PatchImage& patch, Rest& rest);
+  void addPatch(const PatchImage& patch, SurfaceMemory::Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
-                   const PixelRectangle& rectangle, Rest& rest);
+                   const PixelRectangle& rectangle, SurfaceMemory::Rest& rest);
   void beginGroup();
-  void endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest);
+  void endGroup(const PixelRectangle& rectangle, bool flat, SurfaceMemory::Rest& rest);
   void addBoundary(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches);
   void addToSum(std::uint32_t chain, std::int32_t value);
   void addEdges(std::uint32_t chain, std::int32_t value) { chains_.add(chain, value * winding_); }
@@ -92,22 +72,18 @@ class SurfaceRaster {
   void rest(const Group& group);
 
   const SurfaceSet* set_ = nullptr;
-  SurfaceSetNumber set_number_;  // of the set that was drawn last
+  SurfaceMemory* memory_ = nullptr;  // of the set
   SurfaceDrawing drawing_;
   const ParallelFor* parallel_for_ = nullptr;  // of the view
   std::int32_t winding_ = 1;                   // of a front in this view; -1 in one that mirrors
   SurfaceView view_;
   ChainEdges chains_;
-  NeedMap needs_;  // with targets
-  WindingMap map_;
+  WindingMap* map_ = nullptr;  // of the view
   SurfaceStats stats_;
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;
-  // These have a place for each item of the largest set that was drawn.
-  base::SparseArray<ChainSum> sums_;                  // by chain
-  base::SparseArray<Facing> facings_;                 // by patch
-  base::SparseArray<Rest> patch_rests_, part_rests_;  // by patch and by part
-  std::uint32_t group_ = 0;                           // number of the last group
+  base::SparseArray<ChainSum> sums_;  // by chain, of the largest set that was drawn
+  std::uint32_t group_ = 0;           // number of the last group
   // Groups that wait for being drawn, their boundaries, and how far away they are:
   std::vector<Group> groups_;
   std::vector<BoundaryChain> boundary_;
@@ -121,20 +97,11 @@ class SurfaceRaster {
   std::vector<ShownPatch> sides_;
   std::vector<PatchImage> shown_, patches_;
   std::vector<std::uint32_t> wanted_;
-  std::uint32_t view_number_ = 0;
-  std::uint32_t first_view_ = 0;    // number of the first one since a jump
-  std::uint32_t first_of_set_ = 0;  // number of the first one since which the same set is drawn
-  std::uint32_t rested_ = 0;        // groups that began to rest in this view
-  Vec3d eye_;                       // of the last view
-  double travel_ = 0.0;             // of the eye, from view to view of the set, or more; metres
+  std::uint32_t rested_ = 0;  // groups that began to rest in this view
   // addPart() sets these to the number of its part, and to what Group::distance is for it.
   std::uint32_t part_ = 0;
   double part_distance_ = 0.0;
-  // Parts of which something paid in this view and in the one before; and where a part is in the first list,
-  // plus 1, or 0.
-  std::vector<UsefulPart> useful_, useful_before_;
-  base::SparseArray<std::uint32_t> place_in_useful_;
-  std::vector<std::uint32_t> useful_parts_;
+  std::vector<std::uint32_t> useful_parts_;  // scratch for one listUseful()
 };
 
 }  // namespace sightline::occlusion

@@ -7,21 +7,12 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
-#include "src/occlusion/need_map.h"
+#include "src/occlusion/box_extents.h"
+#include "src/occlusion/depth_target.h"
 #include "src/occlusion/pixel_boxes.h"
-#include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
 
 namespace sightline::occlusion {
-
-// The image of a box.
-struct BoxExtent {
-  double nearest = 0.0, farthest = 0.0;  // depths, metres
-  bool cut = false;                      // it reaches the depth at which surfaces are clipped
-  bool inexact = false;                  // nothing can be told of its image
-  bool among_viewers = false;            // something of it may be too near to one of the viewers
-  PixelRectangle rectangle;
-};
 
 // A chosen cluster as it appears in the buffer.
 struct ClusterImage {
@@ -67,8 +58,8 @@ struct PartImage {
 class SurfaceView {
  public:
   // What surfaces nearer than this depth do is left out, metres.
-  double clipDepth() const { return clip_depth_; }
-  const PixelView& view() const { return view_; }
+  double clipDepth() const { return extents_.clipDepth(); }
+  const PixelView& view() const { return extents_.view(); }
 
   // min_pixels: parts with a smaller rectangle in the buffer are left out.
   void begin(const SurfaceSet& set, const PixelView& view, double min_pixels, const DepthTarget& target);
@@ -78,9 +69,6 @@ class SurfaceView {
   void listParts(std::span<const std::uint32_t> parts);
   // What was listed last.
   std::span<const PartImage> parts() const { return parts_; }
-
-  // Sets the map to what these boxes need, as far as they lie beyond the clip depth.
-  void setNeeds(std::span<const Box> boxes, NeedMap& needs);
 
   PatchSide sideOf(std::uint32_t patch) const;
   // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths
@@ -101,16 +89,8 @@ class SurfaceView {
   void findCandidates(std::span<const ObjectId> objects);
   // Sets `images` to those of the candidates that are large enough, in their order.
   void imagesOfCandidates(std::vector<PartImage>& images);
-  void setViewers();
-  double tooNear() const;
-  bool clearOfViewers(const Plane& support, double thickness) const;
   double smallestOf(const BoxExtent& object) const;
   void sortParts();
-  float nearestOf(const BoxExtent& extent) const;
-  // Projects boxes, for the other form of extentOf().
-  void project(std::span<const Box> boxes, std::vector<PixelBox>& images) const;
-  bool extentOf(const Box& box, const PixelBox& image, BoxExtent& extent) const;
-  bool extentOf(const Box& box, BoxExtent& extent) const;
   bool chooseCluster(std::uint32_t number, const PixelBox& box, ClusterImage& image, double& farthest) const;
   // The bound of surfaces that lie before this plane and no farther away than `farthest`.
   DepthBound boundOf(const Plane& plane, double farthest) const;
@@ -119,15 +99,9 @@ class SurfaceView {
   Plane behind(const Plane& support, double thickness, std::int32_t sign) const;
 
   const SurfaceSet* set_ = nullptr;
-  PixelView view_;
-  double min_pixels_ = 0.0;
+  BoxExtents extents_;
   DepthTarget target_;
-  double clip_depth_ = 0.0;
-  // The box around all places in camera space that are too near to one of several viewers; empty if there is
-  // one.
-  Vec3d viewers_min_, viewers_max_;
-  BoxProjection projection_;
-  bool batches_ = false;  // projection_ is exact enough for all of the set
+  double min_pixels_ = 0.0;
   std::vector<ClusterImage> clusters_;
   std::vector<PartImage> parts_, unsorted_;
   std::vector<std::uint32_t> first_of_key_, candidates_;

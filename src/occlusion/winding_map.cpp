@@ -12,9 +12,26 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
-  target_ = target;
+void WindingMap::begin(const DepthTarget& target) {
+  beginMap(target);
+  squares_.look(target);
+}
+
+void WindingMap::begin(const DepthTarget& target, float everywhere) {
+  beginMap(target);
+  squares_.fill(target, everywhere);
+}
+
+void WindingMap::aimAt(NeedMap* needs) {
   needs_ = needs;
+  if (needs_ != nullptr) {
+    needs_->look(squares_);
+  }
+}
+
+void WindingMap::beginMap(const DepthTarget& target) {
+  target_ = target;
+  needs_ = nullptr;
   const auto wholes = [](std::uint32_t pixels, std::int32_t size) {
     return (static_cast<std::int32_t>(pixels) + size - 1) / size;
   };
@@ -27,10 +44,6 @@ void WindingMap::begin(const DepthTarget& target, NeedMap* needs) {
     runs_.assign(static_cast<std::size_t>(rows), {});
     far_stride_ = static_cast<std::uint32_t>(columns * FarDepths::kAcross + FarDepths::kSpare);
     far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
-  }
-  squares_.look(target);
-  if (needs_ != nullptr) {
-    needs_->look(squares_);
   }
 }
 
@@ -46,6 +59,18 @@ WindingMap::Plan WindingMap::planOf(const WindingGroup& group, std::span<const B
   }
   plan.known = plan.in_runs || sum <= kLargestSum;
   return plan;
+}
+
+// All pixels that may have been drawn.
+PixelRectangle WindingMap::pixelsOfPlans() const {
+  PixelRectangle all{buffer().width, buffer().height, 0, 0};
+  for (const Plan& plan : plans_) {
+    const TileRange& tiles = plan.tiles;
+    all = {std::min(all.x0, tiles.first_column * kTileWidth), std::min(all.y0, tiles.first_row * kTileHeight),
+           std::max(all.x1, (tiles.last_column + 1) * kTileWidth),
+           std::max(all.y1, (tiles.last_row + 1) * kTileHeight)};
+  }
+  return {all.x0, all.y0, std::min(all.x1, buffer().width), std::min(all.y1, buffer().height)};
 }
 
 void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const BoundaryEdge> edges,
@@ -75,7 +100,7 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
     }
   }
   if (needs_ != nullptr) {
-    needs_->look(squares_);
+    needs_->look(squares_, pixelsOfPlans());
   }
 }
 

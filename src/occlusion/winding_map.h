@@ -28,10 +28,14 @@ struct WindingGroup {
 
 class WindingMap {
  public:
-  // The target holds what it is to begin with, and nobody else writes into it up to the last draw(). needs:
-  // what counts as a gain, or null for all that becomes nearer. It must outlive the view, and looks at the
-  // target again after each draw().
-  void begin(const DepthTarget& target, NeedMap* needs = nullptr);
+  // The target holds what it is to begin with, and nobody else writes into it up to the last draw().
+  void begin(const DepthTarget& target);
+  // The same where all of the target has this value, which spares looking at it.
+  void begin(const DepthTarget& target, float everywhere);
+  // What counts as a gain from now on; null, as after begin(): all that becomes nearer. The map must outlive
+  // that, and is kept up to date with what is drawn.
+  void aimAt(NeedMap* needs);
+  const DepthTarget& target() const { return target_; }
   EdgeBuffer buffer() const {
     return {static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)};
   }
@@ -69,6 +73,8 @@ class WindingMap {
     bool known = false;  // numbers are large enough for its windings
   };
 
+  void beginMap(const DepthTarget& target);
+  PixelRectangle pixelsOfPlans() const;
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;
   // The rows of tiles from first_row to last_row of a group.
   WindingGain drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,

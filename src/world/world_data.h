@@ -85,12 +85,16 @@ struct WorldData {
   // Whether the instance's own surfaces may be drawn.
   bool hides(std::uint32_t id) const {
     const InstanceData& own = instances[id];
-    return (own.where == Whereabouts::kSettled || own.where == Whereabouts::kMoving) && own.occludes &&
-           own.displacement == 0.0f && own.mesh != InstanceData::kNone &&
+    return hasBox(id) && own.occludes && own.displacement == 0.0f && own.mesh != InstanceData::kNone &&
            !meshes[own.mesh].mesh.surfaces.parts.empty();
   }
 
-  // Returns the box, from the origin, of an instance that hides and has one.
+  // Whether the instance is shown and has a box.
+  bool hasBox(std::uint32_t id) const {
+    return instances[id].where == Whereabouts::kSettled || instances[id].where == Whereabouts::kMoving;
+  }
+
+  // Returns the box, from the origin, of an instance that has one.
   const Box& boxOf(std::uint32_t id) const {
     return instances[id].where == Whereabouts::kMoving ? moving.boxOf(id) : settled.boxOf(id);
   }

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-
-#include "sightline/math/frustum.h"
 
 namespace sightline::world {
 
@@ -13,33 +10,11 @@ using hierarchy::DynamicTree;
 
 namespace {
 
-constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
-constexpr std::uint32_t kLongestDelay = 15;
-// A join is not drawn either where rounding moves a member by more than this part of its distance.
-constexpr double kDepthRounding = 0x1p-21;
+// Where more than one of so many is new, what was of no use in earlier frames says nothing of this one.
+constexpr std::size_t kStill = 2;
 
 double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Metres: how far the nearest point of a box is from the eye's plane; negative behind it.
-double nearestDepth(const Box& box, const View& view) {
-  const Vec3d half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
-  return dot(view.forward, center(box) - view.eye) - dot(abs(view.forward), half);
-}
-
-// By how many pixels of a picture of this size, in x or in y, two points appear apart at most that are this
-// far apart and at least this far from the eye's plane (metres).
-double pixelsApart(double metres, double nearest, const View& view, const DepthBufferView& picture) {
-  const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
-  const double scale = 0.5 * std::max(picture.height / high, picture.width / (high * view.aspect));
-  if (view.orthographic) {
-    return metres * scale;
-  }
-  // What moves in depth moves by this part of it across the picture.
-  const double slope =
-      high * (std::max(view.aspect, 1.0)) * (1.0 + std::max(std::abs(view.shift_x), std::abs(view.shift_y)));
-  return metres * (1.0 + slope) * scale / std::max(nearest, view.near);
 }
 
 }  // namespace
@@ -85,26 +60,18 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
   counts_ = {};
   const View view = begin(data, view_world);
   sets_.find(data, view_world, clip_world_ == Plane() ? settings_.groups : 0);
-  if (settings_.occlusion && jumped) {
-    test(data, true);
-    listed_.clear();
-    found_.list(listed_);
-    draw(data, view, listed_, ViewStep::kJump);
-  } else if (settings_.occlusion) {
-    draw(data, view, last, ViewStep::kNext);
+  if (settings_.occlusion) {
+    drawFirst(data, view, last, jumped);
   }
   pyramid_.finish();
   stats.draw_us += microsecondsSince(start);
   const auto drawn = std::chrono::steady_clock::now();
+  hidden_.begin(data);
   test(data, false);
-  if (settings_.occlusion && !jumped) {
-    listed_.clear();
-    found_.listWithout(last_set, listed_);
-    if (culling::changesFast(listed_.size(), last.size())) {
-      draw(data, view, listed_, ViewStep::kSame);
-      pyramid_.finish();
-      test(data, false);
-    }
+  if (settings_.occlusion) {
+    drawFound(data, view, jumped, last_set);
+    usual_work_.frame(work_);
+    version_ = data.version;
   }
   stats.test_us += microsecondsSince(drawn);
   stats.occluders += counts_.occluders;
@@ -112,6 +79,88 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
   stats.nodes_tested += counts_.nodes_tested;
   stats.boxes_tested += counts_.boxes_tested;
   kept.add(found_);
+}
+
+// Draws what is known to hide something before anything is tested: what did so in the last frame, for boxes
+// that are to be hidden again, and where there are none, all that the last frame kept; after a jump all that
+// is in the view's volume.
+void WorldEye::drawFirst(const WorldData& data, const View& view, std::span<const InstanceId> last,
+                         bool jumped) {
+  makeRoom(data);
+  aims_.grow(data.instances.size(), data.instances.capacity());
+  aims_.beginView(jumped);
+  useful_before_.swap(useful_);
+  useful_.clear();
+  work_ = 0;
+  if (jumped) {
+    test(data, true);
+    shown_.clear();
+    found_.list(shown_);
+    work_ = draw(data, view, shown_, whatIsLeft(ViewStep::kJump));
+    return;
+  }
+  hidden_boxes_.clear();
+  hidden_.append(
+      data, aims_.kMaxHiddenBoxes, frame_, [&](std::uint32_t id) { return isDrawn(data.instances[id]); },
+      hidden_boxes_);
+  aims_.aimAtHidden(hidden_boxes_, {}, [&](InstanceId id) { return data.boxOf(id.value); });
+  SurfaceDrawing drawing = whatIsLeft(ViewStep::kNext);
+  drawing.targets = aims_.boxes();
+  drawing.useful_only = !drawing.targets.empty();
+  work_ = draw(data, view, last, drawing);
+}
+
+// Draws what may hide some of what is found not to be hidden, and tests that once more; where nothing is
+// known of that, the surfaces of what is new, if it is much.
+void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, const IdBits& last_set) {
+  shown_.clear();
+  found_.list(shown_);
+  news_.clear();
+  for (const InstanceId id : shown_) {
+    if (!last_set.has(id.value) || data.instances[id.value].born > version_) {
+      news_.push_back(id);
+    }
+  }
+  if (!jumped) {
+    SurfaceDrawing drawing = whatIsLeft(ViewStep::kSame);
+    drawing.draw_resting = news_.size() * kStill > shown_.size();
+    if (!aims_.boxes().empty()) {
+      const std::uint32_t worth = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
+                                                   [&](InstanceId id) { return data.boxOf(id.value); });
+      // Where most is new, what was drawn says little of what is worth it.
+      drawing.budget = drawing.draw_resting && worth > 0 ? drawing.budget : worth;
+      drawing.targets = aims_.boxes();
+      if (drawing.budget > 0) {
+        if (const std::uint32_t work = draw(data, view, shown_, drawing); work > 0) {
+          work_ += work;
+          pyramid_.finish();
+          testAimedAt();
+        }
+      }
+    } else if (culling::changesFast(news_.size(), shown_.size())) {
+      // What comes into view is not counted in the budget.
+      drawing.budget = settings_.drawing.budget;
+      draw(data, view, news_, drawing);
+      pyramid_.finish();
+      hidden_.begin(data);
+      test(data, false);
+    }
+  }
+  aims_.endView(shown_, news_);
+}
+
+// A world that grows within what was reserved makes this vector copy nothing either.
+void WorldEye::makeRoom(const WorldData& data) {
+  pasts_.reserve(data.instances.capacity());
+  pasts_.resize(std::max(pasts_.size(), data.instances.size()));
+}
+
+// How surfaces are drawn with what is left of the frame's budget.
+SurfaceDrawing WorldEye::whatIsLeft(ViewStep step) const {
+  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
+  drawing.budget -= std::min(drawing.budget, work_);
+  drawing.step = step;
+  return drawing;
 }
 
 // Sets found_ to what may be seen, of all or by the view's volume alone.
@@ -148,6 +197,9 @@ void WorldEye::test(const DynamicTree& tree, bool view_only) {
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const Visibility visibility = answers[i].visibility;
       if (visibility == Visibility::kHidden) {
+        if (!entry.view_only) {
+          noteHidden(node, i, answers[i]);
+        }
         continue;
       }
       const bool sees_all = entry.view_only || visibility == Visibility::kVisible;
@@ -162,185 +214,32 @@ void WorldEye::test(const DynamicTree& tree, bool view_only) {
   }
 }
 
-// Whether the surfaces of a join are wholly drawn in the view.
-bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
-  if ((joined.groups & settings_.groups) == 0) {
-    return false;
+// What lies beside the view is not hidden by the buffer.
+void WorldEye::noteHidden(const DynamicTree::Node& node, std::size_t child, const BoxAnswer& answer) {
+  if (!answer.on_buffer) {
+    return;
   }
-  if (clip_ == Plane()) {
-    return true;
-  }
-  const Vec3d to_origin = data.origin - joined.join.origin;
-  const double rounding = clip_rounding_ + 0x1p-48 * dot(abs(clip_.normal), abs(to_origin));
-  return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds, rounding) > 0;
-}
-
-// Sets of_join_ and alone_. The candidates may have been removed, hidden or moved since they were kept.
-void WorldEye::takeCandidates(const WorldData& data, const View& view,
-                              std::span<const InstanceId> candidates) {
-  of_join_.resize(std::max(of_join_.size(), data.joins.size()));
-  for (std::vector<ObjectId>& members : of_join_) {
-    members.clear();
-  }
-  alone_.clear();
-  const bool clips = !(clip_ == Plane());
-  for (const InstanceId id : candidates) {
-    if (id.value >= data.instances.size() || !data.hides(id.value)) {
-      continue;
-    }
-    const InstanceData& own = data.instances[id.value];
-    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value), clip_rounding_) <= 0)) {
-      continue;
-    }
-    const bool joined = own.join != InstanceData::kNone && isJoined(data, data.joins[own.join]);
-    if (joined) {
-      of_join_[own.join].emplace_back(own.object);
-    }
-    if (own.alone || !joined) {
-      alone_.push_back(id.value);
-    }
-  }
-  for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
-    if (!of_join_[join].empty() && isBlurred(data, data.joins[join].join, view)) {
-      separate(data, join);
-    }
+  if (node.leaf) {
+    hidden_.addInstance(node.children[child]);
+  } else {
+    hidden_.addNode(node.boxes[child]);
   }
 }
 
-// Whether the rounding of the positions of a join might show. All members count, candidates or not, as the
-// surfaces of one may be found together with those of any other.
-bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const View& view) const {
-  if (join.rounding == 0.0) {
-    return false;
-  }
-  if (!(settings_.join_rounding > 0.0)) {
-    return true;
-  }
-  const auto shows = [&](const Box& box) {
-    const double nearest = nearestDepth(box, view);
-    return pixelsApart(join.rounding, nearest, view, pyramid_.depthBuffer()) > settings_.join_rounding ||
-           join.rounding > kDepthRounding * std::max(nearest, view.near);
-  };
-  // Most joins end here: none of their members is so near.
-  const Vec3d from_origin = join.origin - data.origin;
-  const Vec3d margin = Vec3d{1.0, 1.0, 1.0} * (join.rounding + 0x1p-20 * length(from_origin));
-  const Box all{Vec3f(Vec3d(join.surfaces.bounds.min) + from_origin - margin),
-                Vec3f(Vec3d(join.surfaces.bounds.max) + from_origin + margin)};
-  if (all.wellFormed() && !shows(all)) {
-    return false;
-  }
-  const Frustum frustum = frustumOf(view);
-  return std::any_of(join.instances.begin(), join.instances.end(), [&](InstanceId id) {
-    if (!id.valid()) {
-      return false;  // it has left, and its surfaces with it
-    }
-    if (!data.hides(id.value)) {
-      return true;  // it has no box from this origin
-    }
-    const Box& box = data.boxOf(id.value);
-    return shows(box) && std::none_of(frustum.planes.begin(), frustum.planes.end(), [&](const Plane& plane) {
-             return sideOf(plane, box, join.rounding) < 0;
-           });
-  });
-}
-
-// Has the members of a join drawn by their own meshes.
-void WorldEye::separate(const WorldData& data, std::uint32_t join) {
-  for (const ObjectId object : of_join_[join]) {
-    const InstanceId id = data.joins[join].join.instances[object.value];
-    if (!data.instances[id.value].alone) {  // else it is drawn so already
-      alone_.push_back(id.value);
+// Tests what was aimed at once more, and takes what is hidden out of found_ and shown_.
+void WorldEye::testAimedAt() {
+  const std::span<const InstanceId> aimed_at = aims_.aimedAt();
+  aimed_at_answers_.resize(std::max(aimed_at_answers_.size(), aimed_at.size()));
+  const std::span<BoxAnswer> answers = std::span(aimed_at_answers_).first(aimed_at.size());
+  pyramid_.classify(aims_.boxes(), answers, {.plain_from = 0});
+  counts_.boxes_tested += static_cast<std::uint32_t>(aimed_at.size());
+  for (std::size_t i = 0; i < aimed_at.size(); ++i) {
+    if (answers[i].visibility == Visibility::kHidden) {
+      found_.remove(aimed_at[i].value);
+      hidden_.addInstance(aimed_at[i].value);
     }
   }
-  of_join_[join].clear();
-}
-
-void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                    ViewStep step) {
-  takeCandidates(data, view, candidates);
-  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
-  drawing.step = step;
-  const std::uint32_t budget = drawing.budget;
-  drawJoins(data, drawing);
-  drawAlone(data, view, drawing);
-  if (step != ViewStep::kSame) {
-    usual_work_.frame(budget - drawing.budget);
-  }
-}
-
-// Takes what it draws from drawing.budget, as does drawAlone().
-void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
-  for (std::uint32_t join = 0; join < data.joins.size() && drawing.budget > 0; ++join) {
-    if (of_join_[join].empty()) {
-      continue;
-    }
-    const WorldJoin& joined = data.joins[join].join;
-    MovingSurfaces placed{&joined.surfaces, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-      placed.scene_from_surfaces(axis, 3) = joined.origin[axis] - data.origin[axis];
-    }
-    const SurfaceStats drawn = pyramid_.draw(placed, of_join_[join], drawing);
-    counts_.occluders += drawn.groups > 0 ? 1 : 0;
-    counts_.edges += drawn.edges;
-    drawing.budget -= std::min(drawing.budget, drawn.work);
-  }
-}
-
-// Sets near_first_ to those of alone_ that are large enough and whose retest delay is over.
-void WorldEye::listNearFirst(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
-  boxes_.clear();
-  for (const std::uint32_t id : alone_) {
-    boxes_.push_back(data.boxOf(id));
-  }
-  images_.resize(std::max(images_.size(), boxes_.size()));
-  const DepthBufferView buffer = pyramid_.depthBuffer();
-  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height, boxes_,
-                          images_);
-  near_first_.clear();
-  for (std::size_t i = 0; i < alone_.size(); ++i) {
-    const occlusion::PixelBox& image = images_[i];
-    const bool near = image.place == occlusion::BoxPlace::kUnbounded;
-    const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
-    const RetestDelay& delay = retest_delays_[alone_[i]];
-    const bool waits = drawing.step == ViewStep::kNext && delay.until > frame_ &&
-                       delay.born == data.instances[alone_[i]].born;
-    // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
-    const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
-    if (image.place != occlusion::BoxPlace::kOutside && !open && !waits &&
-        (near || pixels >= drawing.min_pixels)) {
-      near_first_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
-    }
-  }
-  std::sort(near_first_.begin(), near_first_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
-  });
-}
-
-void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  // A world that grows within what was reserved makes this vector copy nothing either.
-  retest_delays_.reserve(data.instances.capacity());
-  retest_delays_.resize(std::max(retest_delays_.size(), data.instances.size()));
-  listNearFirst(data, view, drawing);
-  for (const Candidate& candidate : near_first_) {
-    if (drawing.budget == 0) {
-      break;
-    }
-    const InstanceData& own = data.instances[candidate.id];
-    const SurfaceStats drawn = pyramid_.draw(
-        MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.originFromMesh(candidate.id)}, drawing);
-    counts_.occluders += drawn.groups > 0 ? 1 : 0;
-    counts_.edges += drawn.edges;
-    drawing.budget -= std::min(drawing.budget, drawn.work);
-    RetestDelay& delay = retest_delays_[candidate.id];
-    if (drawn.groups == 0 || drawn.gain < kMinGain * drawn.work) {
-      // Instances whose delay begins in the same frame are drawn again in different ones.
-      const std::uint32_t last = delay.born == own.born ? delay.length : 0;
-      const std::uint32_t length = std::min(2 * last + 1, kLongestDelay);
-      delay = {own.born, frame_ + 1 + length + candidate.id % (length / 2 + 1), length};
-    } else {
-      delay = {own.born, 0, 0};
-    }
-  }
+  std::erase_if(shown_, [&](InstanceId id) { return !found_.has(id.value); });
 }
 
 Visibility WorldEye::classify(const Box& box) const {
@@ -352,14 +251,16 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
                           std::span<const InstanceId> ignored) {
   ++frame_;
   counts_ = {};
+  makeRoom(data);
+  useful_.clear();
   const View view = begin(data, view_world);
   test(data, true);
   for (const InstanceId id : ignored) {
     found_.remove(id.value);
   }
-  listed_.clear();
-  found_.list(listed_);
-  takeCandidates(data, view, listed_);
+  shown_.clear();
+  found_.list(shown_);
+  takeCandidates(data, view, shown_);
   // What an ignored member of a join hides is not known apart from what the others do.
   for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
     const auto of_this = [&](InstanceId id) {
@@ -371,9 +272,8 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
   }
   SurfaceDrawing drawing = settings_.drawing;
   drawing.step = ViewStep::kJump;
-  const bool nothing_between = listed_.empty() && data.unbounded.empty();
-  drawJoins(data, drawing);
-  drawAlone(data, view, drawing);
+  const bool nothing_between = shown_.empty() && data.unbounded.empty();
+  drawInOrder(data, view, drawing);
   pyramid_.finish();
   const Visibility visibility = pyramid_.classify(box);
   return visibility == Visibility::kVisible && !nothing_between ? Visibility::kPartial : visibility;

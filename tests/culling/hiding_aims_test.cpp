@@ -37,20 +37,21 @@ std::vector<ObjectId> objectsOf(std::span<const Box> boxes) {
 
 class HidingAimsTest : public testing::Test {
  protected:
-  HidingAimsTest() : bounds_(numberedBoxes()), aims_(bounds_) {}
+  HidingAimsTest() : bounds_(numberedBoxes()), aims_(kObjects) {}
 
   // A view that shows these objects and hides none of them.
   std::uint32_t view(const std::vector<ObjectId>& shown, const std::vector<ObjectId>& news, double drawn,
                      std::uint32_t left = 60000) {
     aims_.beginView(false);
-    const std::uint32_t work = aims_.aimAtShown(shown, news, drawn, left);
+    const std::uint32_t work =
+        aims_.aimAtShown(shown, news, drawn, left, [this](ObjectId object) { return bounds_[object.value]; });
     aimed_at_ = objectsOf(aims_.boxes());
     aims_.endView(shown, news);
     return work;
   }
 
   std::vector<Box> bounds_;
-  HidingAims aims_;
+  HidingAims<ObjectId> aims_;
   std::vector<ObjectId> aimed_at_;
 };
 
@@ -58,7 +59,7 @@ TEST_F(HidingAimsTest, FirstComesWhatTheLastViewHid) {
   aims_.beginView(false);
   EXPECT_TRUE(aims_.boxes().empty());
   const Box box{Vec3f(50, 0, 0), Vec3f(60, 1, 1)};
-  aims_.aimAtHidden({&box, 1}, numbers(3, 5));
+  aims_.aimAtHidden({&box, 1}, numbers(3, 5), [this](ObjectId object) { return bounds_[object.value]; });
   EXPECT_EQ(objectsOf(aims_.boxes()), (std::vector{ObjectId(3u), ObjectId(4u), ObjectId(50u)}));
   aims_.beginView(false);
   EXPECT_TRUE(aims_.boxes().empty());
@@ -90,7 +91,7 @@ TEST_F(HidingAimsTest, WhatWasDrawnPutsOffWhatIsWorthLess) {
 TEST_F(HidingAimsTest, WorkThatIsTooMuchForOneViewIsLeftToLaterOnes) {
   // Where little was drawn, and where much was.
   for (const double drawn : {100.0, 1200.0}) {
-    aims_ = HidingAims(bounds_);
+    aims_ = HidingAims<ObjectId>(kObjects);
     const std::uint32_t first = view(numbers(0, kObjects), numbers(0, kObjects), drawn);
     EXPECT_GT(first, drawn);
     EXPECT_LE(first, std::max(2.0 * drawn, 2000.0));
@@ -110,7 +111,7 @@ TEST_F(HidingAimsTest, NotMuchIsSavedUp) {
 
 TEST_F(HidingAimsTest, AfterAJumpKeptObjectsAreAimedAtInTheNextView) {
   for (int views_before = 0; views_before < 8; ++views_before) {
-    aims_ = HidingAims(bounds_);
+    aims_ = HidingAims<ObjectId>(kObjects);
     for (int i = 0; i < views_before; ++i) {
       view({}, {}, 1.0);
     }

@@ -700,6 +700,74 @@ TEST(SurfaceTargets, WhatHidMostComesFirstInTheNextView) {
   EXPECT_EQ(raster.surfaceStats().groups, 0u) << "it is drawn once in a view";
 }
 
+Mat4 movedBy(const Vec3d& by) {
+  Mat4 m;
+  for (int axis = 0; axis < 3; ++axis) {
+    m(axis, 3) = by[axis];
+  }
+  return m;
+}
+
+TEST(SurfaceTargets, AreOfAllSetsThatAreDrawnWhereverTheseAre) {
+  Scene scene;
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), 0.0f, -3.0f, 3.0f, -9.0f, 9.0f);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 64, .height = 64});
+  SurfaceDrawing drawing = kEverything;
+  std::vector<Box> targets{behind(5.0f, 0.0f)};
+  drawing.targets = targets;
+  const auto groupsAt = [&](double x, double z) {
+    return raster.draw(MovingSurfaces{&surfaces, movedBy({x, 0.0, z})}, drawing).groups;
+  };
+  raster.begin(frontView());
+  EXPECT_EQ(groupsAt(-5.0, -10.0), 0u) << "beside the target";
+  EXPECT_EQ(groupsAt(15.0, -40.0), 0u) << "behind it";
+  EXPECT_EQ(groupsAt(5.0, -10.0), 1u);
+  EXPECT_EQ(groupsAt(4.5, -9.0), 0u) << "it is hidden by the set before";
+  // The same memory has other boxes now.
+  targets[0] = behind(-5.0f, 0.0f);
+  EXPECT_EQ(groupsAt(-5.0, -10.0), 1u);
+  EXPECT_EQ(groupsAt(-5.0, -9.0), 0u);
+  // Nothing is known of them in another view, nor once something else was drawn.
+  raster.begin(frontView());
+  EXPECT_EQ(groupsAt(-5.0, -10.0), 1u);
+  raster.draw(OccluderSet(), {});
+  EXPECT_EQ(groupsAt(-5.0, -10.0), 0u);
+  drawing.targets = {};
+  EXPECT_EQ(groupsAt(5.0, -10.0), 1u) << "without targets everything counts";
+  EXPECT_EQ(groupsAt(10.0, -20.0), 0u) << "but what is behind it";
+}
+
+TEST(SurfaceTargets, EachOfSeveralSetsRemembersWhatWasOfUse) {
+  Scene scene;
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), -10.0f, -3.0f, 3.0f, -9.0f, 9.0f);
+  const SurfaceSet left = findSurfaces(scene.view()), right = findSurfaces(scene.view());
+  Rasteriser raster({.width = 64, .height = 64});
+  const std::array targets{behind(-5.0f, 0.0f), behind(5.0f, 0.0f)};
+  SurfaceDrawing drawing = kEverything;
+  drawing.targets = targets;
+  const auto groups = [&](const SurfaceSet& set) {
+    const MovingSurfaces placed{&set, movedBy({&set == &left ? -5.0 : 5.0, 0.0, 0.0})};
+    return raster.draw(placed, set.objects, drawing).groups;
+  };
+  raster.begin(frontView());
+  EXPECT_EQ(groups(left), 1u);
+  EXPECT_EQ(groups(right), 1u);
+  drawing.useful_only = true;
+  for (int view = 0; view < 3; ++view) {
+    drawing.step = ViewStep::kNext;
+    raster.begin(frontView());
+    EXPECT_EQ(groups(left), 1u);
+    EXPECT_EQ(groups(right), 1u);
+    drawing.step = ViewStep::kSame;
+    EXPECT_EQ(groups(left), 0u) << "it is drawn once in a view";
+  }
+  // A set that is drawn for the first time in a view is not taken for drawn because the view is the same.
+  raster.begin(frontView());
+  drawing.useful_only = false;
+  EXPECT_EQ(groups(left), 1u);
+}
+
 // What is kept from view to view of which side of a surface shows changes nothing.
 TEST(SurfaceProbes, ViewsThatFollowEachOtherAreDrawnAsTheyAreAlone) {
   test::Random random(5);

@@ -54,6 +54,17 @@ struct NeedBed {
     depths.look(target());
     map.look(depths);
   }
+  // Brings some pixels nearer, and looks at these alone.
+  void comeNearer(const PixelRectangle& where) {
+    for (std::int32_t y = where.y0; y < where.y1; ++y) {
+      for (std::int32_t x = where.x0; x < where.x1; ++x) {
+        values[static_cast<std::size_t>(y * stride + x)] += 2.0f;
+      }
+    }
+    SquareDepths depths;
+    depths.look(target());
+    map.look(depths, where);
+  }
 
   PixelRectangle randomRectangle(test::Random& random) const {
     const auto below = [&](std::int32_t end) {
@@ -120,7 +131,7 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
   for (int n = 0; n < 4000; ++n) {
     NeedBed bed(random);
     for (int k = 0; k < 5; ++k) {
-      const PixelRectangle rectangle = bed.randomRectangle(random);
+      const PixelRectangle rectangle = bed.randomRectangle(random), changed = bed.randomRectangle(random);
       const auto nearest = static_cast<float>(random.below(7));
       const DepthBound level{.at_origin = nearest, .floor = nearest}, sloping = randomBound(random);
       const std::uint32_t expected = bed.pixels(rectangle, level),
@@ -131,6 +142,10 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
         bed.look(random);
         EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
         EXPECT_EQ(bed.map.pixels(rectangle, sloping), of_sloping) << n << ", " << hwy::TargetName(target);
+        NeedBed nearer = bed;
+        nearer.comeNearer(changed);
+        EXPECT_EQ(nearer.map.pixels(rectangle, nearest), nearer.pixels(rectangle, level))
+            << n << ", " << hwy::TargetName(target);
         hwy::SetSupportedTargetsForTest(0);
       }
       (expected > 0 ? needed : not_needed) += 1;

@@ -67,5 +67,20 @@ TEST(SquareDepths, AreTheLeastOfTheirSquaresAndOfEachRectangle) {
   EXPECT_GT(not_nearer, 300u);
 }
 
+TEST(SquareDepths, OfATargetWithOneValueAreThatValue) {
+  for (const std::uint32_t width : {1u, 8u, 61u}) {
+    std::vector<float> values(std::size_t{72} * 19, -3.0f);
+    const DepthTarget target{values.data(), width, 19, 72};
+    SquareDepths filled, looked_at;
+    filled.fill(target, -3.0f);
+    looked_at.look(target);
+    for (std::int32_t row = 0; row < squaresIn(19); ++row) {
+      for (std::int32_t column = 0; column < squaresIn(width); ++column) {
+        EXPECT_EQ(filled.ofRow(row)[column], looked_at.ofRow(row)[column]);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline::occlusion

@@ -463,7 +463,8 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
             needs.add({x, y, x + kSquare, y + kSquare}, nearest);
           }
         }
-        map.begin(target, &needs);
+        map.begin(target);
+        map.aimAt(&needs);
         EXPECT_EQ(map.wanted(all, depth), wanted()) << "at first";
         std::array<WindingGain, 1> gains;
         map.draw(std::array{WindingGroup{all, chains, depths, flat}}, edges, gains);

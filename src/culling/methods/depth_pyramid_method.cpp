@@ -147,7 +147,7 @@ class DepthPyramidMethod final : public CullingMethod {
   void drawSurfaces(const CullingFrame& frame) {
     hidden_.clear();
     if (settings_.temporal_coherence && !frame.jumped && surfaces_.draws()) {
-      traversal_->appendHidden(culling::HidingAims::kMaxHiddenBoxes, turn_++, hidden_);
+      traversal_->appendHidden(culling::HidingAims<ObjectId>::kMaxHiddenBoxes, turn_++, hidden_);
     }
     if (hidden_.empty()) {
       surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);

@@ -38,7 +38,8 @@ class SurfaceDrawer {
     timed_ = TimedBudget(budget_us_);
     last_kept_.clear();
     news_.clear();
-    aims_ = surfaces_ != nullptr ? HidingAims(scene.object_bounds) : HidingAims();
+    bounds_ = scene.object_bounds;
+    aims_ = HidingAims<ObjectId>(surfaces_ != nullptr ? bounds_.size() : 0);
     nearest_.reset();
     if (surfaces_ != nullptr) {
       nearest_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -77,13 +78,13 @@ class SurfaceDrawer {
     work_ += built_work_;
   }
   // Draws only what hides something, in a view that follows the last one for which this buffer was drawn.
-  // hidden: boxes that the buffer hid in that view, at most HidingAims::kMaxHiddenBoxes. First comes what hid
-  // most there.
+  // hidden: boxes that the buffer hid in that view, at most HidingAims<ObjectId>::kMaxHiddenBoxes. First
+  // comes what hid most there.
   template <typename Buffer>
   void drawWhatHides(Buffer& buffer, std::span<const Box> hidden, std::span<const ObjectId> last_visible) {
     // What several boxes or a finer buffer hid, the box as a whole does not say.
     findNews(last_kept_, last_visible);
-    aims_.aimAtHidden(hidden, news_);
+    aims_.aimAtHidden(hidden, news_, [this](ObjectId object) { return boundsOf(object); });
     SurfaceDrawing drawing = whatIsLeft(false);
     drawing.targets = aims_.boxes();
     drawing.useful_only = true;
@@ -154,6 +155,7 @@ class SurfaceDrawer {
   // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
   static constexpr std::size_t kStill = 2;
 
+  const Box& boundsOf(ObjectId object) const { return bounds_[object.value]; }
   // Sets news_ to those of some objects that are not among others; both ascending.
   void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
     news_.clear();
@@ -180,7 +182,8 @@ class SurfaceDrawer {
     if (!aims_.boxes().empty()) {
       SurfaceDrawing drawing = whatIsLeft(false);
       drawing.draw_resting = most_is_new;
-      drawing.budget = aims_.aimAtShown(shown, news_, built_work_, drawing.budget);
+      drawing.budget = aims_.aimAtShown(shown, news_, built_work_, drawing.budget,
+                                        [this](ObjectId object) { return boundsOf(object); });
       if (drawing.budget == 0) {
         return false;
       }
@@ -246,7 +249,8 @@ class SurfaceDrawer {
   std::vector<ObjectId> in_frustum_;  // objects whose surfaces are drawn first after a jump
   bool more_in_frustum_ = false;      // whether there are others in the frustum
   std::vector<ObjectId> last_kept_, news_;
-  HidingAims aims_;  // while it has no boxes, surfaces are drawn whatever they hide
+  std::span<const Box> bounds_;  // of all objects
+  HidingAims<ObjectId> aims_;    // while it has no boxes, surfaces are drawn whatever they hide
 };
 
 }  // namespace sightline::culling
