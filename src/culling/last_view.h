@@ -13,6 +13,11 @@ constexpr bool changesFast(std::size_t new_count, std::size_t kept_count) {
   return new_count * kCalm > kept_count;
 }
 
+// Whether most of what is kept is new: what was of no use in earlier frames says nothing of this one.
+constexpr bool mostIsNew(std::size_t new_count, std::size_t kept_count) {
+  return 2 * new_count > kept_count;
+}
+
 // Keeps the view of the last frame, to detect jumps of the camera.
 class LastView {
  public:

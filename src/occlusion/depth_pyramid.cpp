@@ -85,14 +85,16 @@ void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> ca
 
 SurfaceStats DepthPyramid::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
                                 const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->finished = false;
-  return impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
+  const SurfaceStats drawn = impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
+  impl_->finished = impl_->finished && drawn.groups == 0;
+  return drawn;
 }
 
 SurfaceStats DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
                                 const ParallelFor& parallel_for) {
-  impl_->finished = false;
-  return impl_->raster.draw(moving, drawing, parallel_for);
+  const SurfaceStats drawn = impl_->raster.draw(moving, drawing, parallel_for);
+  impl_->finished = impl_->finished && drawn.groups == 0;
+  return drawn;
 }
 
 void DepthPyramid::finish(const ParallelFor& parallel_for) {

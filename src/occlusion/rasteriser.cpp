@@ -123,7 +123,7 @@ struct Rasteriser::Impl {
   void draw(const SurfaceSet& set, const PixelView& set_view, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
     aimAt(drawing.targets);
-    SurfaceMemory& memory = memories.of(set);
+    SurfaceMemory& memory = memories.of(set, views);
     SurfaceDrawing next = drawing;
     if (drawing.step == ViewStep::kSame && memory.buffer_view != views) {
       next.step = ViewStep::kNext;  // this set is not yet drawn in the view
@@ -200,7 +200,7 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 }
 
 void Rasteriser::reserve(const SurfaceSet& surfaces) {
-  impl_->surfaces.reserve(surfaces, impl_->memories.of(surfaces));
+  impl_->surfaces.reserve(surfaces, impl_->memories.of(surfaces, impl_->views));
 }
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,

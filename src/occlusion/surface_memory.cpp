@@ -51,18 +51,21 @@ void SurfaceMemory::beginView(const SurfaceSet& set, const Vec3d& eye_of_view, V
   eye = eye_of_view;
 }
 
-SurfaceMemory& SurfaceMemories::of(const SurfaceSet& set) {
+SurfaceMemory& SurfaceMemories::of(const SurfaceSet& set, std::uint64_t buffer_view) {
   auto found = std::find_if(sets_.begin(), sets_.end(),
                             [&](const Known& known) { return known.number == set.number; });
-  if (found == sets_.end() && sets_.size() < kMostSets) {
-    sets_.push_back({.memory = std::make_unique<SurfaceMemory>()});
+  if (found == sets_.end() && sets_.size() < most_) {
+    sets_.push_back({set.number, std::make_unique<SurfaceMemory>()});
     found = sets_.end() - 1;
   } else if (found == sets_.end()) {
-    found = std::min_element(sets_.begin(), sets_.end(),
-                             [](const Known& a, const Known& b) { return a.last_use < b.last_use; });
+    found = std::min_element(sets_.begin(), sets_.end(), [](const Known& a, const Known& b) {
+      return a.memory->buffer_view < b.memory->buffer_view;
+    });
+    if (found->memory->buffer_view + 1 >= buffer_view) {
+      return shared_;
+    }
+    found->number = set.number;
   }
-  found->number = set.number;
-  found->last_use = ++uses_;
   return *found->memory;
 }
 

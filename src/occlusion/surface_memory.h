@@ -18,14 +18,14 @@ struct SurfaceMemory {
     std::uint32_t since = 0;  // number of the view
     bool away = false;     // a back shows, of which nothing is drawn, so that the patch need not be looked at
     std::int8_t side = 0;  // as in PatchSide
-    double travel = 0.0;   // it is the same at least until travel_ is that much
+    double travel = 0.0;   // it is the same at least until `travel` is that much
   };
 
   // What is not worth its cost is left out for some views; what paid is drawn first in the next one.
   struct Rest {
     std::uint32_t since = 0;                  // number of the view in which that was found
     std::uint32_t length = 0;                 // views after that one, at most
-    double travel = 0.0;                      // where a long rest ends: what travel_ is then
+    double travel = 0.0;                      // where a long rest ends: what `travel` is then
     std::uint32_t drawn_in = 0, paid_in = 0;  // numbers of the last view in which it was drawn, and paid
   };
 
@@ -57,22 +57,28 @@ struct SurfaceMemory {
   base::SparseArray<std::uint32_t> place_in_useful;
 };
 
-// What is known of several sets. Beyond some number of them, what is known of the one that was drawn least
-// recently is given up.
+// What is known of several sets. Where there are more than so many, what is known of the one that was drawn
+// least recently is given up, unless that was in this view of the buffer or in the last one: sets that are
+// drawn in turn would take each other's places, and none would have one when it is drawn again. All that have
+// no place share one, which remembers the last of them.
 class SurfaceMemories {
  public:
-  SurfaceMemory& of(const SurfaceSet& set);
-
- private:
   static constexpr std::size_t kMostSets = 256;
 
+  explicit SurfaceMemories(std::size_t most = kMostSets) : most_(most) {}
+
+  // buffer_view: number of the view of the buffer. What is returned holds until the next call.
+  SurfaceMemory& of(const SurfaceSet& set, std::uint64_t buffer_view);
+
+ private:
   struct Known {
     SurfaceSetNumber number;
-    std::uint64_t last_use = 0;
     std::unique_ptr<SurfaceMemory> memory;
   };
+
+  std::size_t most_;
   std::vector<Known> sets_;
-  std::uint64_t uses_ = 0;
+  SurfaceMemory shared_;
 };
 
 }  // namespace sightline::occlusion

@@ -10,9 +10,6 @@ using hierarchy::DynamicTree;
 
 namespace {
 
-// Where more than one of so many is new, what was of no use in earlier frames says nothing of this one.
-constexpr std::size_t kStill = 2;
-
 double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
@@ -101,7 +98,10 @@ void WorldEye::drawFirst(const WorldData& data, const View& view, std::span<cons
   }
   hidden_boxes_.clear();
   hidden_.append(
-      data, aims_.kMaxHiddenBoxes, frame_, [&](std::uint32_t id) { return isDrawn(data.instances[id]); },
+      data, aims_.kMaxHiddenBoxes, frame_,
+      [&](std::uint32_t id) {
+        return isDrawn(data.instances[id]) && sideOf(clip_, data.boxOf(id), clip_rounding_) >= 0;
+      },
       hidden_boxes_);
   aims_.aimAtHidden(hidden_boxes_, {}, [&](InstanceId id) { return data.boxOf(id.value); });
   SurfaceDrawing drawing = whatIsLeft(ViewStep::kNext);
@@ -123,7 +123,7 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
   }
   if (!jumped) {
     SurfaceDrawing drawing = whatIsLeft(ViewStep::kSame);
-    drawing.draw_resting = news_.size() * kStill > shown_.size();
+    drawing.draw_resting = culling::mostIsNew(news_.size(), shown_.size());
     if (!aims_.boxes().empty()) {
       const std::uint32_t worth = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
                                                    [&](InstanceId id) { return data.boxOf(id.value); });
@@ -146,6 +146,7 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
       test(data, false);
     }
   }
+  std::erase_if(news_, [&](InstanceId id) { return !found_.has(id.value); });
   aims_.endView(shown_, news_);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "oracle/region_proof.h"
 #include "tests/pvs/bake_scenes.h"
 #include "tests/support/rounds.h"
 
@@ -643,6 +644,24 @@ TEST(RegionOcclusion, PanelsDoNotReachAroundTheEndOfAWall) {
   // wall on it is in the shaft.
   const Scene scene = sceneOf({dicedBlock({-4, -1, -4}, {4, 0, 4}, 4), block({0, 0, -1}, {0.25f, 4, 1})});
   EXPECT_TRUE(hides(scene, {{-6, -0.5, -0.2}, {-5, 1, 0.2}}, {.box = {{2, 0, -0.2}, {3, 1, 0.2}}}));
+}
+
+// A wall of two blocks is one surface, of which the line that proves crosses the one or the other.
+TEST(FusedOcclusion, TheLineThatProvesCrossesTheObjectThatItNames) {
+  const Solid left = block({-8, -8, -2}, {0, 8, -1}), right = block({0, -8, -2}, {8, 8, -1});
+  const Vec3d eye{0, 0, 2};
+  for (const std::vector<Solid>& wall : {std::vector{left, right}, {right, left}}) {
+    const Scene scene = sceneOf(wall);
+    const Panels panels = findPanels(scene.view());
+    const RegionProof exact(scene.view());
+    for (const double low : {-0.75, -0.5, -0.25}) {
+      FusedOcclusion occlusion(panels, 100.0);
+      ASSERT_EQ(occlusion.ask({eye, eye}, {.box = {{low, -1, -6}, {low + 1, 1, -4}}}, kNear),
+                FusedOcclusion::Answer::kHidden);
+      const FusedOcclusion::Proof& proof = occlusion.proof();
+      EXPECT_FALSE(exact.misses(proof.from, proof.to, ObjectId(proof.object))) << low;
+    }
+  }
 }
 
 // Viewers anywhere among walls, floors and furniture, in them as well.

@@ -61,7 +61,7 @@ TEST(WorldTargets, WhatHidesNothingElseIsNotDrawnAndTheSameIsKept) {
   EXPECT_LT(8 * edges, edges_anew);
 }
 
-TEST(WorldTargets, WhatMovesBehindAnotherThingIsSoonHiddenByThat) {
+TEST(WorldTargets, WhatMovesBehindAnotherThingIsHiddenByThatInTheEnd) {
   // The second wall is above the posts, and has hidden nothing so far.
   PostsAndWall scene;
   const InstanceId other = scene.story.add(0, cuboidAt({-6, 4, -11}, {5, 3, 0.5}));
@@ -78,6 +78,7 @@ TEST(WorldTargets, WhatMovesBehindAnotherThingIsSoonHiddenByThat) {
   do {
     culler.cull(scene.story.world, PostsAndWall::view(frame++));
   } while (keeps(culler, crate) && ++frames < 60);
+  // The wall rests for at most 15 + 7 frames, as one that has hidden nothing.
   EXPECT_LT(frames, 40);
   // Where the wall goes, the crate is seen at once.
   scene.story.remove(other);
@@ -118,6 +119,29 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
   }
   EXPECT_GT(edges, 0u);
   EXPECT_LT(2 * edges, edges_anew);
+}
+
+// What is drawn for things that come into view hides nothing, or is no more than what is drawn already.
+TEST(WorldTargets, BoxesCanBeClassifiedAfterEachFrame) {
+  Story story(allShapes());
+  story.add(0, cuboidAt({2, -8, -33}, {20, 24, 1}));  // hides the crates
+  story.add(0, cuboidAt({-3, -3, -20}, {4, 5, 1}));   // hides nothing
+  for (int i = 0; i < 30; ++i) {
+    story.add(0, cuboidAt({6 + 0.25 * i, 0, -44}, {0.25, 0.25, 0.25}));
+  }
+  WorldCuller culler;
+  std::vector<InstanceId> news;
+  for (int frame = 0; frame < 60; ++frame) {
+    for (const InstanceId id : news) {
+      story.remove(id);
+    }
+    news.clear();
+    for (int i = 0; i < 20; ++i) {
+      news.push_back(story.add(0, cuboidAt({0.25 * i - 30, 2, -44}, {0.125, 0.125, 0.125})));
+    }
+    culler.cull(story.world, viewFrom({0.001953125 * frame, 1.5, 0}, {0, 0, -1}));
+    EXPECT_EQ(culler.classify({{10, 0, -50}, {11, 1, -48}}), Visibility::kHidden) << frame;
+  }
 }
 
 // Boxes of a world of instances of one unit cube.

@@ -152,8 +152,6 @@ class SurfaceDrawer {
  private:
   // So many objects are looked at after a jump before anything is hidden.
   static constexpr std::size_t kNearest = 512;
-  // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
-  static constexpr std::size_t kStill = 2;
 
   const Box& boundsOf(ObjectId object) const { return bounds_[object.value]; }
   // Sets news_ to those of some objects that are not among others; both ascending.
@@ -178,7 +176,7 @@ class SurfaceDrawer {
       return true;
     }
     findNews(shown, last_kept_);
-    const bool most_is_new = news_.size() * kStill > shown.size();
+    const bool most_is_new = culling::mostIsNew(news_.size(), shown.size());
     if (!aims_.boxes().empty()) {
       SurfaceDrawing drawing = whatIsLeft(false);
       drawing.draw_resting = most_is_new;

@@ -242,8 +242,11 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& from, const Vec3d& to) {
     if (components_[number].counted || !isCrossedOften(number, to)) {
       return false;
     }
-    // A component is gathered from a panel that a line crosses.
-    proof_ = {from, to, panels_.panels[members_[components_[number].first]].object};
+    // The component may have been gathered from a panel of another object, which an earlier line crossed.
+    const auto crossed = std::ranges::find_if(crossings_, [&](const Crossing& crossing) {
+      return crossing.sum > 0 && isMember(crossing.panel, number);
+    });
+    proof_ = {from, to, panels_.panels[crossed->panel].object};
     return true;
   };
   // What no front was crossed of cannot hide. Those of earlier lines are counted at the end.
@@ -268,8 +271,7 @@ bool FusedOcclusion::isCrossedOften(std::uint32_t number, const Vec3d& end) {
   component.crossings = 0;
   component.in_doubt = false;
   for (const Crossing& crossing : crossings_) {
-    const Place& place = places_[crossing.panel];
-    if (place.question == question_ && place.component == number) {
+    if (isMember(crossing.panel, number)) {
       component.crossings += crossing.sum;
       component.in_doubt = component.in_doubt || crossing.in_doubt;
     }

@@ -106,6 +106,9 @@ class FusedOcclusion {
   bool anyPanelOn(const Vec3d& from, const Vec3d& to, const Test& test);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
   bool clear() const;
+  bool isMember(std::uint32_t panel, std::uint32_t component) const {
+    return places_[panel].question == question_ && places_[panel].component == component;
+  }
   std::uint32_t componentOf(std::uint32_t panel);
   bool gather(std::uint32_t component);
   bool misses(const PanelEdge& edge);
