@@ -18,8 +18,8 @@ namespace sightline {
 
 struct WorldCullerSettings {
   RasterSettings raster{};  // of the depth buffer into which surfaces are drawn
-  // How the surfaces of an instance or a join are drawn; `budget` is for all of a view. What says which of them
-  // (`step`, `targets`, `useful_only`, `draw_resting`) has no effect.
+  // How the surfaces of an instance or a join are drawn; `budget` is for all of a view. What says which
+  // of them (`step`, `targets`, `useful_only`, `draw_resting`) has no effect.
   SurfaceDrawing drawing{};
   bool occlusion = true;  // false: by the view's volume alone
   // Only instances that have one of these bits are drawn in the view (Instance::groups).
@@ -47,8 +47,8 @@ struct WorldCullStats {
 // Culls a World for one view, frame after frame. Each view of a frame (the camera's, cascades of shadows,
 // reflections) has a culler of its own, and several cullers may cull one world at the same time.
 // Conservative: whatever can be seen is kept. What hides is what hid something or was kept in the frame
-// before, and what is found not to be hidden in this one, each as far as it is there and where it is now, never
-// where it was.
+// before, and what is found not to be hidden in this one, each as far as it is there and where it is now,
+// never where it was.
 //
 // Nothing is allocated once the storage has grown to what a few frames need. For one thread at a time.
 class WorldCuller {
