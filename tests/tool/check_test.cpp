@@ -122,7 +122,7 @@ TEST_F(Check, ClaimsAreThoseOfWhereViewersAreInACell) {
         file_,
         {"--witnesses", witnesses_, "--occlusion", occlusion, "--merge-tolerance", "0.5", "--region",
          region({0.07, 0.1, 0.1}, {0.43, 0.83, 0.77}), "--region", region({0.4, 0.3, 0.2}, {0.61, 0.9, 0.9})},
-        fused ? "2" : "4");
+        fused ? "2" : "3");
     const Outcome one = check({"--json", "-"});
     EXPECT_EQ(one.code, 0) << one.out << one.err;
     const json report = parse(one.out);
