@@ -114,9 +114,7 @@ class WorldEye {
   culling::HidingAims<InstanceId> aims_;  // while it has no boxes, surfaces are drawn whatever they hide
   std::uint64_t version_ = 0;             // of the world in the last frame
   WorldCullStats counts_;                 // of this frame
-  // Of this frame, as SurfaceStats::work: what counts in the budget, and what of it was drawn before the
-  // first test.
-  std::uint32_t work_ = 0, built_work_ = 0;
+  std::uint32_t work_ = 0;                // of this frame, as SurfaceStats::work: what counts in the budget
 
   IdBits found_;
   std::vector<InstanceId> shown_, news_;  // found_ as a list, and those of them that are new in this frame

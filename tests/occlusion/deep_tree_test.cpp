@@ -81,8 +81,8 @@ TEST(DeepTree, IsBuiltAndAskedOnASmallStack) {
   }
 }
 
-// Of the four variants, two build the same tree and ask it in other ways. With these numbers of boards
-// each would be a little deeper than the limit.
+// Each variant here has a twin that builds the same tree and asks it in another way. The boards are so many
+// that each tree would be a little deeper than the limit.
 TEST(DeepTree, IsNeverDeeperThanItsLimit) {
   constexpr std::pair<OcclusionTreeVariant, int> kBoards[] = {{OcclusionTreeVariant::kFSE, 1350},
                                                               {OcclusionTreeVariant::kFME, 1520}};

@@ -41,6 +41,16 @@ inline Shape boxShape() {
   return shape;
 }
 
+// Scales a box of 1 m to this size, from this corner.
+inline Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {
+  Mat4 m;
+  for (int axis = 0; axis < 3; ++axis) {
+    m(axis, axis) = size[axis];
+    m(axis, 3) = corner[axis];
+  }
+  return m;
+}
+
 // The panel is in the plane z = 0, with its front towards +z.
 inline Shape panelShape(bool double_sided, Opacity opacity = Opacity::kOpaque) {
   Shape shape;

@@ -14,15 +14,6 @@ namespace {
 
 using namespace world_story;
 
-Mat4 cuboidAt(const Vec3d& low, const Vec3d& size) {
-  Mat4 m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m(axis, axis) = size[axis];
-    m(axis, 3) = low[axis];
-  }
-  return m;
-}
-
 std::vector<InstanceId> visibleOf(const WorldCuller& culler) {
   return {culler.visible().begin(), culler.visible().end()};
 }
@@ -30,13 +21,13 @@ std::vector<InstanceId> visibleOf(const WorldCuller& culler) {
 // A wall with crates behind it, and posts before it, which hide no crate that the wall does not hide.
 struct PostsAndWall {
   Story story{allShapes()};
-  InstanceId wall = story.add(0, cuboidAt({-16, -8, -33}, {32, 24, 1}));
+  InstanceId wall = story.add(0, boxAt({-16, -8, -33}, {32, 24, 1}));
   std::vector<InstanceId> posts, crates;
 
   PostsAndWall() {
     for (int i = 0; i < 24; ++i) {
-      posts.push_back(story.add(0, cuboidAt({i - 12.0, -2, -15.0 - 0.25 * (i % 3)}, {0.5, 3, 0.5})));
-      crates.push_back(story.add(0, cuboidAt({0.5 * i - 6.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
+      posts.push_back(story.add(0, boxAt({i - 12.0, -2, -15.0 - 0.25 * (i % 3)}, {0.5, 3, 0.5})));
+      crates.push_back(story.add(0, boxAt({0.5 * i - 6.0, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
     }
   }
   static View view(int frame) { return viewFrom({0.015625 * frame, 1.5, 0}, {0, 0, -1}); }
@@ -64,8 +55,8 @@ TEST(WorldTargets, WhatHidesNothingElseIsNotDrawnAndTheSameIsKept) {
 TEST(WorldTargets, WhatMovesBehindAnotherThingIsHiddenByThatInTheEnd) {
   // The second wall is above the posts, and has hidden nothing so far.
   PostsAndWall scene;
-  const InstanceId other = scene.story.add(0, cuboidAt({-6, 4, -11}, {5, 3, 0.5}));
-  const InstanceId crate = scene.story.add(0, cuboidAt({8, 0, -50}, {0.5, 0.5, 0.5}));
+  const InstanceId other = scene.story.add(0, boxAt({-6, 4, -11}, {5, 3, 0.5}));
+  const InstanceId crate = scene.story.add(0, boxAt({8, 0, -50}, {0.5, 0.5, 0.5}));
   WorldCuller culler;
   int frame = 0;
   for (; frame < 30; ++frame) {
@@ -73,7 +64,7 @@ TEST(WorldTargets, WhatMovesBehindAnotherThingIsHiddenByThatInTheEnd) {
   }
   EXPECT_TRUE(keeps(culler, other));
   EXPECT_FALSE(keeps(culler, crate));
-  scene.story.move(crate, cuboidAt({-4, 6, -13}, {0.5, 0.5, 0.5}));
+  scene.story.move(crate, boxAt({-4, 6, -13}, {0.5, 0.5, 0.5}));
   int frames = 0;
   do {
     culler.cull(scene.story.world, PostsAndWall::view(frame++));
@@ -94,11 +85,11 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
   for (int i = 0; i < 32; ++i) {
     const double side = i % 2 == 0 ? -16.0 : 0.0;
     std::vector<InstanceId>& join = members[static_cast<std::size_t>(i % 2)];
-    join.push_back(story.add(0, cuboidAt({side + i / 2, -8, -33}, {1, 24, 1})));
-    join.push_back(story.add(0, cuboidAt({side + i / 2 + 0.25, -2, -16}, {0.5, 3, 0.5})));
+    join.push_back(story.add(0, boxAt({side + i / 2, -8, -33}, {1, 24, 1})));
+    join.push_back(story.add(0, boxAt({side + i / 2 + 0.25, -2, -16}, {0.5, 3, 0.5})));
     // None is behind the gap between the joins, which may be seen through as far as either knows.
     const double x = 0.125 * i + (i % 2 == 0 ? -7.0 : 3.0);
-    crates.push_back(story.add(0, cuboidAt({x, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
+    crates.push_back(story.add(0, boxAt({x, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
   }
   for (const std::vector<InstanceId>& join : members) {
     story.world.use(story.world.prepareJoin(join));
@@ -124,10 +115,10 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
 // What is drawn for things that come into view hides nothing, or is no more than what is drawn already.
 TEST(WorldTargets, BoxesCanBeClassifiedAfterEachFrame) {
   Story story(allShapes());
-  story.add(0, cuboidAt({2, -8, -33}, {20, 24, 1}));  // hides the crates
-  story.add(0, cuboidAt({-3, -3, -20}, {4, 5, 1}));   // hides nothing
+  story.add(0, boxAt({2, -8, -33}, {20, 24, 1}));  // hides the crates
+  story.add(0, boxAt({-3, -3, -20}, {4, 5, 1}));   // hides nothing
   for (int i = 0; i < 30; ++i) {
-    story.add(0, cuboidAt({6 + 0.25 * i, 0, -44}, {0.25, 0.25, 0.25}));
+    story.add(0, boxAt({6 + 0.25 * i, 0, -44}, {0.25, 0.25, 0.25}));
   }
   WorldCuller culler;
   std::vector<InstanceId> news;
@@ -137,7 +128,7 @@ TEST(WorldTargets, BoxesCanBeClassifiedAfterEachFrame) {
     }
     news.clear();
     for (int i = 0; i < 20; ++i) {
-      news.push_back(story.add(0, cuboidAt({0.25 * i - 30, 2, -44}, {0.125, 0.125, 0.125})));
+      news.push_back(story.add(0, boxAt({0.25 * i - 30, 2, -44}, {0.125, 0.125, 0.125})));
     }
     culler.cull(story.world, viewFrom({0.001953125 * frame, 1.5, 0}, {0, 0, -1}));
     EXPECT_EQ(culler.classify({{10, 0, -50}, {11, 1, -48}}), Visibility::kHidden) << frame;

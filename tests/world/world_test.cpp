@@ -16,16 +16,6 @@ namespace {
 
 using namespace world_story;
 
-// Scales a box of 1 m to this size, from this corner.
-Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {
-  Mat4 m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m(axis, axis) = size[axis];
-    m(axis, 3) = corner[axis];
-  }
-  return m;
-}
-
 class WorldStory : public testing::TestWithParam<bool> {};
 
 TEST_P(WorldStory, WhateverIsSeenIsKept) {
