@@ -37,11 +37,11 @@ class HidingAims {
     aimed_at_.clear();
   }
 
-  // Aims at boxes that the last view hid, and at objects that it hid. boxOf: returns the box of an object.
+  // Aims at boxes that the last view hid, and at objects that it hid. box_of: returns the box of an object.
   template <typename BoxOf>
-  void aimAtHidden(std::span<const Box> boxes, std::span<const Id> objects, const BoxOf& boxOf) {
+  void aimAtHidden(std::span<const Box> boxes, std::span<const Id> objects, const BoxOf& box_of) {
     boxes_.assign(boxes.begin(), boxes.end());
-    append(objects, boxOf);
+    append(objects, box_of);
   }
 
   // Aims instead at objects that the depth buffer shows: at all that are new since the last view, and in some
@@ -49,7 +49,7 @@ class HidingAims {
   // that may be done for them, at most `left`, or 0 if that is to wait.
   template <typename BoxOf>
   std::uint32_t aimAtShown(std::span<const Id> shown, std::span<const Id> news, double drawn,
-                           std::uint32_t left, const BoxOf& boxOf) {
+                           std::uint32_t left, const BoxOf& box_of) {
     aimed_at_.reserve(shown.size());
     aimed_at_.assign(news.begin(), news.end());
     if (!news.empty() || views_ % kViewsBetweenTries == 0) {
@@ -70,7 +70,7 @@ class HidingAims {
     saved_work_ = std::min(saved_work_ - worth, most);
     boxes_.clear();
     boxes_.reserve(shown.size());
-    append(std::span<const Id>(aimed_at_), boxOf);
+    append(std::span<const Id>(aimed_at_), box_of);
     return worth;
   }
 
@@ -103,9 +103,9 @@ class HidingAims {
   static constexpr double kMinShare = 1.5, kMaxShare = 2.0, kMinCap = 2000.0;
 
   template <typename BoxOf>
-  void append(std::span<const Id> objects, const BoxOf& boxOf) {
+  void append(std::span<const Id> objects, const BoxOf& box_of) {
     for (const Id object : objects) {
-      boxes_.push_back(boxOf(object));
+      boxes_.push_back(box_of(object));
     }
   }
 

@@ -28,15 +28,15 @@ class HiddenBoxes {
 
   // Appends boxes of what was hidden, at most so many. Where there are more they are spread over all of them,
   // others in each turn. Instances that have gone since, or that have no box now, are left out, also where
-  // another one has got the id, and so are those for which isDrawn(id) is false.
+  // another one has got the id, and so are those for which is_drawn(id) is false.
   template <typename IsDrawn>
-  void append(const WorldData& data, std::size_t most, std::size_t turn, const IsDrawn& isDrawn,
+  void append(const WorldData& data, std::size_t most, std::size_t turn, const IsDrawn& is_drawn,
               std::vector<Box>& boxes) const {
     const Vec3d moved = origin_ - data.origin;
     culling::spreadOver(nodes_.size() + instances_.size(), most, turn, [&](std::size_t i) {
       if (i < nodes_.size()) {
         boxes.push_back({Vec3f(Vec3d(nodes_[i].min) + moved), Vec3f(Vec3d(nodes_[i].max) + moved)});
-      } else if (const std::uint32_t id = instances_[i - nodes_.size()]; isThere(data, id) && isDrawn(id)) {
+      } else if (const std::uint32_t id = instances_[i - nodes_.size()]; isThere(data, id) && is_drawn(id)) {
         boxes.push_back(data.boxOf(id));
       }
     });
