@@ -9,6 +9,7 @@
 
 #include "scenes/procedural.h"
 #include "sightline/occluders/occluder_database.h"
+#include "sightline/occluders/surface_set.h"
 #include "tests/support/any_culler.h"
 
 namespace sightline::demo_frames {
@@ -55,6 +56,7 @@ struct DemoScene {
   Hierarchy kd_tree, bvh;
   OccluderSet occluders;
   OccluderDatabase database, detail_database;  // coarse
+  SurfaceSet surfaces;
   ObjectBoxes object_boxes;
 
   explicit DemoScene(Scene source) : scene(std::move(source)) {
@@ -66,6 +68,7 @@ struct DemoScene {
     kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
     bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
     occluders = findOccluders(scene.view());
+    surfaces = findSurfaces(scene.view());
     object_boxes = findObjectBoxes(scene.view());
     OccluderDatabaseSettings coarse{.directions = 16, .occluder_count = 128, .max_bytes = 1u << 20};
     database = OccluderDatabase::build(kd_tree, occluders, coarse);
@@ -76,9 +79,11 @@ struct DemoScene {
     return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
   }
   AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
-    return AnyCuller(
-        hierarchy(kind), bounds, occluders, settings,
-        {.from_eye = &database, .from_objects = &detail_database, .object_boxes = &object_boxes});
+    return AnyCuller(hierarchy(kind), bounds, occluders, settings,
+                     {.from_eye = &database,
+                      .from_objects = &detail_database,
+                      .surfaces = &surfaces,
+                      .object_boxes = &object_boxes});
   }
   // Returns the views of frames first, first + 1, ... of a camera path; fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {

@@ -47,6 +47,29 @@ inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   return cullers;
 }
 
+// Makes cullers that draw whole surfaces, in the ways that they can be combined with other settings.
+inline std::vector<NamedCuller> surfaceCullers(const DemoScene& demo) {
+  const AnySettings surfaces{
+      .method = AnyMethod::kDepthPyramid, .surfaces = SurfaceUse::kAlone, .object_boxes = true};
+  std::vector<NamedCuller> cullers;
+  const auto add = [&](std::string name, const auto& change) {
+    AnySettings settings = surfaces;
+    change(settings);
+    cullers.push_back({std::move(name), demo.culler(HierarchyKind::kBvh, settings)});
+  };
+  cullers.push_back({"surfaces, kd-tree", demo.culler(HierarchyKind::kKdTree, surfaces)});
+  add("surfaces", [](AnySettings&) {});
+  add("surfaces, incoherent", [](AnySettings& s) { s.temporal_coherence = false; });
+  add("surfaces, focused", [](AnySettings& s) { s.focus.worth = 1e9; });
+  add("surfaces, not focused", [](AnySettings& s) { s.focus.magnification = 0.0f; });
+  add("surfaces, eight views at once", [](AnySettings& s) { s.views_at_once = 8; });
+  add("surfaces, little to draw", [](AnySettings& s) { s.drawing.budget = 300; });
+  add("surfaces, few pixels", [](AnySettings& s) { s.raster = {.width = 61, .height = 35}; });
+  add("surfaces with occluders", [](AnySettings& s) { s.surfaces = SurfaceUse::kWithOccluders; });
+  add("surfaces in an opacity map", [](AnySettings& s) { s.method = AnyMethod::kOpacityMap; });
+  return cullers;
+}
+
 inline bool kept(const AnyCuller& culler, ObjectId object) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), object);
 }
@@ -74,15 +97,23 @@ struct Counts {
 
 class Judge {
  public:
-  explicit Judge(const DemoScene& demo)
+  explicit Judge(const DemoScene& demo) : Judge(demo, allCullers(demo)) {}
+  Judge(const DemoScene& demo, std::vector<NamedCuller> cullers)
       : demo_(demo),
         exact_(demo.scene.view()),
-        cullers_(allCullers(demo)),
+        cullers_(std::move(cullers)),
         frustum_(demo.culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum})) {}
 
-  void judge(const View& view, const std::string& where) {
+  // Culls a view that is not judged, so that the next ones follow it.
+  void pass(const View& view) {
     for (NamedCuller& c : cullers_) {
       c.culler.cull(view);
+    }
+  }
+
+  void judge(const View& view, const std::string& where) {
+    pass(view);
+    for (const NamedCuller& c : cullers_) {
       const std::span<const ObjectId> visible = c.culler.visible();
       EXPECT_TRUE(std::adjacent_find(visible.begin(), visible.end(), std::greater_equal<>()) == visible.end())
           << "not ascending, or twice the same: " << c.name << ", " << where;
