@@ -39,6 +39,9 @@ std::uint64_t workOf(std::uint32_t edges, std::uint32_t tiles) {
   return std::uint64_t{edges} + tiles + 8;
 }
 
+// The boundary of a patch has at least so many edges, or the patch covers nothing.
+constexpr std::uint32_t kFewestEdges = 3;
+
 constexpr PixelRectangle kNoPixels{1 << 30, 1 << 30, 0, 0};
 
 PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
@@ -148,6 +151,9 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
   bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
                   !leavesOut(memory_->part_rests[image.part]);
+  if (!together && !pays(pixels, kFewestEdges)) {
+    return;  // nor does any of its patches
+  }
   listPatches(part, together);
   // What adjoins the part is drawn for the seams alone, and is not counted.
   const std::uint64_t patch_pixels = countWanted();
