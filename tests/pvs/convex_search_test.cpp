@@ -139,6 +139,106 @@ TEST(ConvexSearch, FindsWhatAskingAllOccludersFinds) {
   EXPECT_GT(seen_count, 3000u);
 }
 
+// A random part of the box.
+CellBox partOf(Random& random, const CellBox& box) {
+  CellBox part;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = random.in(0.0, 1.0), b = random.in(0.0, 1.0);
+    part.min[axis] = box.min[axis] + (box.max[axis] - box.min[axis]) * std::min(a, b);
+    part.max[axis] = box.min[axis] + (box.max[axis] - box.min[axis]) * std::max(a, b);
+  }
+  return part;
+}
+
+ObjectMask maskOf(const std::vector<bool>& objects) {
+  ObjectMask mask;
+  mask.reset(static_cast<std::uint32_t>(objects.size()));
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    const ObjectRun run{i, i + 1};
+    mask.add(std::span(&run, objects[i] ? 1 : 0));
+  }
+  return mask;
+}
+
+// Half of the towns have one-sided walls in place of solids, some of which look away from the cell.
+TEST(ConvexSearch, FindsTheSameByListsOfCellsAround) {
+  std::size_t hidden_count = 0, seen_count = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Town town(seed);
+    if (seed % 2 == 1) {
+      town.occluders.bodies.clear();
+    }
+    const BakeScene bake(
+        town.scene.view(), town.occluders,
+        {.max_depth = 4, .near_distance = 0.01, .viewers = {{{-40, -40, -40}, {40, 40, 40}}}}, serialFor);
+    ConvexSearch search(bake);
+    CellCandidates outer(bake), lists(bake);
+    Random random(seed + 2000);
+    for (int trial = 0; trial < 8; ++trial) {
+      const CellBox around = cellAround(random.point(35.0), std::pow(10.0, random.in(-0.5, 0.9)));
+      const CellBox cell = trial % 2 == 0 ? around : partOf(random, around);
+      const CellBox part = partOf(random, cell);
+      std::vector<Vec3d> corners = cornersOf(part);
+      if (trial % 3 == 1) {
+        const Vec3d normal = test::randomDirection(random);
+        corners = cornersBefore(part, normal, dot(normal, part.centre()));
+      }
+      const OccluderChoice choice{.search = cellAround(cell.centre(), random.in(20.0, 200.0)), .level = 4};
+      const OccluderChoice all{.search = cellAround({}, 1000.0), .level = 4};
+      ObjectMask none;
+      none.reset(static_cast<std::uint32_t>(bake.boxes.objects.size()));
+      const ObjectMask hidden_around = maskOf(hiddenByAsking(bake, cornersOf(around), all, none)),
+                       known = maskOf(hiddenByAsking(bake, cornersOf(cell), all, none));
+      ASSERT_TRUE(outer.make(around, hidden_around, nullptr, 1'000'000));
+      ASSERT_TRUE(lists.make(cell, known, trial % 4 < 2 ? nullptr : &outer, 1'000'000));
+      const std::vector<bool> expected = hiddenByAsking(bake, corners, choice, known);
+      ObjectMask found;
+      found.reset(static_cast<std::uint32_t>(expected.size()));
+      for (const auto& by_one : search.hiddenFrom(corners, choice, known, none, lists)) {
+        found.add({&by_one.objects, 1});
+      }
+      for (std::uint32_t i = 0; i < expected.size(); ++i) {
+        if (!known.contains(i)) {
+          ++(expected[i] ? hidden_count : seen_count);
+          EXPECT_EQ(found.contains(i), expected[i])
+              << "seed " << seed << ", trial " << trial << ", object " << i;
+        }
+      }
+      // What is known to be seen is not asked about.
+      Runs left;
+      found.complement(left);
+      ObjectMask seen;
+      seen.reset(static_cast<std::uint32_t>(expected.size()));
+      seen.add(left);
+      ObjectMask again;
+      again.reset(static_cast<std::uint32_t>(expected.size()));
+      for (const auto& by_one : search.hiddenFrom(corners, choice, known, seen, lists)) {
+        again.add({&by_one.objects, 1});
+      }
+      for (std::uint32_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(again.contains(i), found.contains(i)) << "seed " << seed << ", object " << i;
+      }
+    }
+  }
+  EXPECT_GT(hidden_count, 2000u);
+  EXPECT_GT(seen_count, 2000u);
+}
+
+TEST(CellCandidates, AreRefusedWhereTheyWouldBeTooLong) {
+  const Town town(7);
+  CellCandidates lists(town.bake);
+  ObjectMask none;
+  none.reset(static_cast<std::uint32_t>(town.bake.boxes.objects.size()));
+  const CellBox cell = cellAround({1.0, 2.0, 3.0}, 4.0);
+  ASSERT_TRUE(lists.make(cell, none, nullptr, 1'000'000));
+  const std::size_t size = lists.size();
+  ASSERT_GT(size, 10u);
+  EXPECT_TRUE(lists.make(cell, none, nullptr, size));
+  EXPECT_EQ(lists.size(), size);
+  EXPECT_FALSE(lists.make(cell, none, nullptr, size - 1));
+  EXPECT_TRUE(lists.groups().empty());
+}
+
 TEST(ConvexSearch, BoundsWhatAPointSees) {
   std::size_t fewer = 0, enough = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {

@@ -218,6 +218,12 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       i < levels ? void(levels_[i] = occludersFor(i)) : gatherFaces(set);
     }
   });
+  levels_of_use_.resize(occluders.size());
+  for (std::uint32_t level = 0; level < levels; ++level) {
+    for (const std::uint32_t i : levels_[level].occluders) {
+      levels_of_use_[i] |= 1u << level;
+    }
+  }
 }
 
 void BakeScene::gatherFaces(const OccluderSet& set) {

@@ -20,7 +20,7 @@ namespace sightline::pvs {
 
 // Version of the bake method; increase it whenever the same input would give other cells, or the same
 // question another answer.
-inline constexpr std::uint32_t kBakeVersion = 15;
+inline constexpr std::uint32_t kBakeVersion = 16;
 
 // Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
 // without what keeps them from it. So it is where narrowing or dividing is asked for.
@@ -91,6 +91,14 @@ struct BakeScene {
   Cone coneTo(const CellBox& box, const Vec3d& point) const {
     return {point, box, lineMargin(), magnitude + reach};
   }
+  // Lines of sight from anywhere in one box to the other.
+  Cone hullOf(const CellBox& from, const CellBox& to) const {
+    return {from, to, lineMargin(), magnitude + reach};
+  }
+  // True if the occluder is useful to cells of this level.
+  bool isOfUseAt(std::uint32_t level, std::uint32_t occluder) const {
+    return (levels_of_use_[occluder] >> level & 1u) != 0;
+  }
   // Appends the faces that intersect the box.
   void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
   // True if some occluder that intersects the box is too small for cells of this level but useful to smaller
@@ -123,6 +131,8 @@ struct BakeScene {
   LevelOccluders occludersFor(std::uint32_t level) const;
   void gatherFaces(const OccluderSet& set);
   std::vector<LevelOccluders> levels_;
+  static_assert(kMaxOctreeDepth < 32);
+  std::vector<std::uint32_t> levels_of_use_;  // by occluder: bits of the levels
 };
 
 }  // namespace sightline::pvs

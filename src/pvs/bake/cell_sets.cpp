@@ -23,6 +23,11 @@ constexpr std::uint64_t kSurfaceWork = 100;  // to ask whether surfaces hide a b
 constexpr std::uint64_t kThoroughWork = 400;
 constexpr std::uint64_t kLineWork = 5;  // to ask whether a line of sight is clear
 
+// Lists handed to the cells within another one have at most so many occluders in all, 28 bytes each. They are
+// made for cells of the last levels only: those of larger cells would be too long.
+constexpr std::size_t kMostHanded = 4'000'000;
+constexpr std::uint32_t kHandingLevels = 3;
+
 std::uint64_t countOf(std::span<const ObjectRun> runs) {
   std::uint64_t count = 0;
   for (const ObjectRun& run : runs) {
@@ -115,6 +120,7 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, con
   faces_.clear();
   scene_.findFaces({box.min - Vec3d{near, near, near}, box.max + Vec3d{near, near, near}}, faces_);
   CellSets sets;
+  parent_seen_ = seen;
   sets.whole = seen;
   if (seen.empty()) {
     sets.whole = {{0, static_cast<std::uint32_t>(scene_.boxes.objects.size())}};
@@ -150,18 +156,28 @@ void CellBaker::closeDoors(const OctreeCell& cell, double search_distance, CellS
   closed_doors_.hide(scene_.regionOf(cell), searchBox(cell, search_distance), sets);
 }
 
+// What is seen from a side is seen from the whole cell, so that little is left to be asked from there.
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
-  removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
-  if (sets.plane) {
-    const SideCorners sides(box, *sets.plane, scene_.side_margin);
-    const auto removeFrom = [&](std::span<const Vec3d> corners, WitnessPart part, Runs& side) {
-      intersect(side, sets.whole, scratch_);
-      side.swap(scratch_);
-      removeHiddenFrom(corners, part, side);
-    };
-    removeFrom(sides.front, WitnessPart::kFront, sets.front);
-    removeFrom(sides.back, WitnessPart::kBack, sets.back);
+  const auto object_count = static_cast<std::uint32_t>(scene_.boxes.objects.size());
+  seen_from_side_.reset(object_count);
+  if (!sets.plane) {
+    removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
+    return;
   }
+  const SideCorners sides(box, *sets.plane, scene_.side_margin);
+  const auto removeFrom = [&](std::span<const Vec3d> corners, WitnessPart part, Runs& side) {
+    intersect(side, sets.whole, scratch_);
+    side.swap(scratch_);
+    removeHiddenFrom(corners, part, side);
+  };
+  const bool front_first = sides.front.size() >= sides.back.size();
+  const auto removeFromFront = [&] { removeFrom(sides.front, WitnessPart::kFront, sets.front); };
+  const auto removeFromBack = [&] { removeFrom(sides.back, WitnessPart::kBack, sets.back); };
+  front_first ? removeFromFront() : removeFromBack();
+  seen_from_side_.add(front_first ? sets.front : sets.back);
+  removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
+  seen_from_side_.reset(object_count);
+  front_first ? removeFromBack() : removeFromFront();
 }
 
 void CellBaker::removeFused(const CellBox& box, const RegionEffort& effort, CellSets& sets) {
@@ -305,9 +321,40 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
     asked_ += countOf(seen);
     hideByChosen(corners);
   }
+  hidden_.remove(seen_from_side_);
   hidden_.complement(seen);
   answer.seen = seen;
   recall_.keep(std::move(answer));
+}
+
+// The lists only save time. So it does not matter which cell's they were made from, and that they are missing
+// where they would be too long. Which occluder hides an object may depend on them, though, if several do; so
+// there are none where witnesses are recorded.
+const CellCandidates* CellBaker::listsAround() {
+  if (parent_seen_.empty() || scene_.settings.witnesses) {
+    return nullptr;
+  }
+  const std::uint64_t parent = cell_ >> 3;
+  const std::size_t level = cellOfNumber(parent).level;
+  if (level + kHandingLevels < scene_.settings.max_depth) {
+    return nullptr;
+  }
+  while (handed_.size() <= level) {
+    handed_.push_back({.lists = CellCandidates(scene_)});
+  }
+  Handed& of_parent = handed_[level];
+  if (of_parent.cell != parent) {
+    const CellCandidates* around = nullptr;
+    for (std::size_t above = level; above-- > 0 && around == nullptr;) {
+      const Handed& handed = handed_[above];
+      around = handed.usable && handed.cell == parent >> (3 * (level - above)) ? &handed.lists : nullptr;
+    }
+    hidden_from_parent_.resetWithout(parent_seen_, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+    of_parent.cell = parent;
+    of_parent.usable =
+        of_parent.lists.make(scene_.regionOf(cellOfNumber(parent)), hidden_from_parent_, around, kMostHanded);
+  }
+  return of_parent.usable ? &of_parent.lists : nullptr;
 }
 
 void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
@@ -315,7 +362,10 @@ void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
     hideBySamples(corners);
     return;
   }
-  const std::span<const ConvexSearch::Found> found = search_.hiddenFrom(corners, choice_, hidden_);
+  const CellCandidates* lists = listsAround();
+  const std::span<const ConvexSearch::Found> found =
+      lists != nullptr ? search_.hiddenFrom(corners, choice_, hidden_, seen_from_side_, *lists)
+                       : search_.hiddenFrom(corners, choice_, hidden_);
   if (scene_.settings.witnesses) {
     recordFound(found);
   }

@@ -3,12 +3,14 @@
 // Computes what may be seen from one cell.
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_candidates.h"
 #include "src/pvs/bake/cell_recall.h"
 #include "src/pvs/bake/closed_doors.h"
 #include "src/pvs/bake/convex_search.h"
@@ -76,6 +78,8 @@ class CellBaker {
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen);
+  // Lists of what may hide the objects that the current cell's parent sees; null if there are none.
+  const CellCandidates* listsAround();
   // Adds to hidden_ what the chosen occluders hide from all corners, by asking each of them.
   void hideByChosen(std::span<const Vec3d> corners);
   // The same by what an earlier bake found. False, with nothing added, if too much has changed for that.
@@ -106,12 +110,21 @@ class CellBaker {
   SampleStore samples_;
   NodeOcclusion surfaces_;
   ClosedDoors closed_doors_;
+  // By level: lists of the last cell there within which something was asked.
+  struct Handed {
+    std::uint64_t cell = 0;  // its number; 0 if there is none
+    bool usable = false;     // false if they would be too long
+    CellCandidates lists;
+  };
+  std::deque<Handed> handed_;
+  Runs parent_seen_;  // from anywhere in the current cell's parent; empty: not known
   // Scratch for the current cell.
   Choice choice_;
   std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
-  ObjectMask hidden_;
+  ObjectMask hidden_, hidden_from_parent_;
+  ObjectMask seen_from_side_;  // of the whole cell that is asked about; otherwise none
   Runs common_, scratch_;
   std::vector<std::uint32_t> hidden_nodes_;
   std::vector<CoarseBox> followed_;

@@ -58,7 +58,6 @@ HWY_INLINE hn::Mask<Lanes> meets(const BoxLanes& boxes, std::size_t first, const
 // many they are.
 std::size_t findMet(const BoxLanes& boxes, std::span<const Cone> cones, std::size_t first, std::size_t count,
                     std::uint32_t* places) {
-  const hn::RebindToUnsigned<Lanes> d;
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(kLanes)) {
     auto met = hn::FirstN(kLanes, count - i);
@@ -68,10 +67,11 @@ std::size_t findMet(const BoxLanes& boxes, std::span<const Cone> cones, std::siz
         break;
       }
     }
-    if (!hn::AllFalse(kLanes, met)) {
-      const auto all = hn::Iota(d, static_cast<std::uint32_t>(first + i));
-      hn::StoreU(hn::Compress(all, hn::RebindMask(d, met)), d, places + found);
-      found += hn::CountTrue(kLanes, met);
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(kLanes, met, bytes);
+    for (auto bits = static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8); bits != 0; bits &= bits - 1) {
+      places[found++] =
+          static_cast<std::uint32_t>(first + i) + static_cast<std::uint32_t>(std::countr_zero(bits));
     }
   }
   return found;
@@ -149,8 +149,13 @@ void BoxLanes::pad() {
 }
 
 void placesMet(const BoxLanes& boxes, std::span<const Cone> cones, std::vector<std::uint32_t>& places) {
-  places.resize(boxes.size() + kConeLanes);
-  places.resize(HWY_DYNAMIC_DISPATCH(findMet)(boxes, cones, 0, boxes.size(), places.data()));
+  placesMet(boxes, 0, boxes.size(), cones, places);
+}
+
+void placesMet(const BoxLanes& boxes, std::size_t first, std::size_t count, std::span<const Cone> cones,
+               std::vector<std::uint32_t>& places) {
+  places.resize(count + kConeLanes);
+  places.resize(HWY_DYNAMIC_DISPATCH(findMet)(boxes, cones, first, count, places.data()));
 }
 
 ConeTree::ConeTree(std::span<const Box> boxes, std::span<const std::uint32_t> numbers) {

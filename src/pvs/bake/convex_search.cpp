@@ -57,7 +57,30 @@ std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Ve
                                                               const OccluderChoice& choice,
                                                               const ObjectMask& known) {
   if (start(corners, choice, known)) {
-    visit(0, 1, nullptr, 0);
+    visit(0, 1, {}, 0);
+  }
+  return found_;
+}
+
+std::span<const ConvexSearch::Found> ConvexSearch::hiddenFrom(std::span<const Vec3d> corners,
+                                                              const OccluderChoice& choice,
+                                                              const ObjectMask& known, const ObjectMask& seen,
+                                                              const CellCandidates& lists) {
+  if (!start(corners, choice, known)) {
+    return found_;
+  }
+  const std::span<const ShadowTree::Node> nodes = scene_.shadow_tree.nodes();
+  for (const CellCandidates::Group& group : lists.groups()) {
+    std::uint32_t left = 0;
+    for (std::uint32_t some = group.leaves; some != 0; some &= some - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(some));
+      const std::uint32_t object = nodes[group.first + i].objects.begin;
+      left |= known.contains(object) || seen.contains(object) ? 0u : 1u << i;
+    }
+    if (left != 0) {
+      hideGroup(group.first, static_cast<std::uint32_t>(std::bit_width(left)), left,
+                {lists.occludersOf(group), false});
+    }
   }
   return found_;
 }
@@ -67,7 +90,7 @@ ConvexSearch::Bounds ConvexSearch::trianglesSeenFrom(const Vec3d& eye, const Occ
   const bool any = start(std::span(&eye, 1), choice, nothing_);
   enough_ = enough;
   if (any) {
-    visit(0, 1, nullptr, 0);
+    visit(0, 1, {}, 0);
   }
   return {seen_triangles_, scene_.triangles.all() - hidden_triangles_};
 }
@@ -83,7 +106,7 @@ bool ConvexSearch::hides(std::span<const Vec3d> corners, const OccluderChoice& c
     return false;
   }
   const std::uint32_t leaf = scene_.shadow_tree.leafAt(position);
-  return hideByAny(leaf, nullptr, leaf, 1, 1) != 0;
+  return hideByAny(leaf, {}, leaf, 1, 1) != 0;
 }
 
 bool ConvexSearch::visit(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth) {
@@ -102,15 +125,7 @@ bool ConvexSearch::visitGroup(std::uint32_t first, std::uint32_t count, Candidat
   for (std::uint32_t i = 0; i < count; ++i) {
     left |= known_->containsAll(nodes[first + i].objects) ? 0u : 1u << i;
   }
-  left &= ~hideByRecent(first, count, left);
-  std::uint32_t seen = 0;
-  while ((left & ~seen) != 0) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(left & ~seen));
-    const std::uint32_t hidden = hideByAny(first + i, candidates, first, count, left);
-    left &= ~hidden;
-    seen |= hidden == 0 ? 1u << i : 0u;
-  }
-  seen = left;
+  std::uint32_t seen = left & ~hideGroup(first, count, left, candidates);
   for (; seen != 0 && !done(); seen &= seen - 1) {
     const std::uint32_t node = first + static_cast<std::uint32_t>(std::countr_zero(seen));
     if (nodes[node].child_count == 0) {
@@ -122,11 +137,25 @@ bool ConvexSearch::visitGroup(std::uint32_t first, std::uint32_t count, Candidat
   return !done();
 }
 
+std::uint32_t ConvexSearch::hideGroup(std::uint32_t first, std::uint32_t count, std::uint32_t left,
+                                      Candidates candidates) {
+  const std::uint32_t all = left;
+  left &= ~hideByRecent(first, count, left);
+  std::uint32_t seen = 0;
+  while ((left & ~seen) != 0) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left & ~seen));
+    const std::uint32_t hidden = hideByAny(first + i, candidates, first, count, left);
+    left &= ~hidden;
+    seen |= hidden == 0 ? 1u << i : 0u;
+  }
+  return all & ~left;
+}
+
 bool ConvexSearch::visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth) {
   const ShadowTree::Node& inner = scene_.shadow_tree.nodes()[node];
   const bool any = scene_.shadow_tree.mayHoldHidden(node);
-  candidates = any ? candidatesBelow(node, candidates, depth) : nullptr;
-  if (!any || (candidates != nullptr && candidates->size() == 0)) {
+  candidates = any ? candidatesBelow(node, candidates, depth) : Candidates();
+  if (!any || (candidates.listed() && candidates.list.count == 0)) {
     seen_triangles_ += scene_.triangles.of({&inner.objects, 1});
     return !done();
   }
@@ -145,7 +174,7 @@ std::array<Cone, 4> ConvexSearch::conesTo(const BoxOf& box_of) const {
 
 ConvexSearch::Candidates ConvexSearch::candidatesBelow(std::uint32_t node, Candidates above,
                                                        std::size_t depth) {
-  if (above != nullptr && above->size() <= kFewCandidates) {
+  if (above.listed() && above.list.count <= kFewCandidates) {
     return above;
   }
   if (candidates_.size() <= depth) {
@@ -154,16 +183,17 @@ ConvexSearch::Candidates ConvexSearch::candidatesBelow(std::uint32_t node, Candi
   BoxLanes& below = candidates_[depth];
   const auto cones = conesTo([&](std::uint32_t i) { return scene_.shadow_tree.cornersBelow(node, i); });
   below.clear();
-  if (above != nullptr) {
-    placesMet(*above, cones, places_);
-    if (above->size() <= kFewToSeparate) {
-      std::erase_if(places_, [&](std::uint32_t place) { return !isSeparated(above->number[place]); });
+  if (above.listed()) {
+    const BoxLanes& boxes = *above.list.boxes;
+    placesMet(boxes, above.list.first, above.list.count, cones, places_);
+    if (above.list.count <= kFewToSeparate) {
+      std::erase_if(places_, [&](std::uint32_t place) { return !isSeparated(boxes.number[place]); });
     }
-    below.add(*above, places_);
+    below.add(boxes, places_);
   } else {
     const ConeTree& all = scene_.occludersInCones(choice_->level);
     if (!all.find(cones, kMostCandidates, places_)) {
-      return nullptr;
+      return {};
     }
     std::erase_if(places_, [&](std::uint32_t place) {
       return !counts(all.boxes().number[place], all.boxes().boxAt(place));
@@ -171,7 +201,7 @@ ConvexSearch::Candidates ConvexSearch::candidatesBelow(std::uint32_t node, Candi
     below.add(all.boxes(), places_);
   }
   below.pad();
-  return &below;
+  return {{&below, 0, below.size()}, true};
 }
 
 std::uint32_t ConvexSearch::hideByRecent(std::uint32_t first, std::uint32_t count, std::uint32_t left) {
@@ -216,16 +246,17 @@ void ConvexSearch::findMet(std::uint32_t node, Candidates candidates) {
   const CellBox box = scene_.shadow_tree.boxOf(node);
   const auto lines = conesTo([&](std::uint32_t i) { return CellBox{box.corner(i), box.corner(i)}; });
   const ConeTree& all = scene_.occludersInCones(choice_->level);
-  const BoxLanes& boxes = candidates != nullptr ? *candidates : all.boxes();
-  if (candidates != nullptr) {
-    placesMet(boxes, lines, places_);
+  const BoxLanes& boxes = candidates.listed() ? *candidates.list.boxes : all.boxes();
+  if (candidates.listed()) {
+    placesMet(boxes, candidates.list.first, candidates.list.count, lines, places_);
   } else {
     all.find(lines, scene_.occluders.size(), places_);
   }
   met_.clear();
   for (const std::uint32_t place : places_) {
     const std::uint32_t occluder = boxes.number[place];
-    if (candidates != nullptr || counts(occluder, boxes.boxAt(place))) {
+    if (candidates.counted ||
+        (scene_.isOfUseAt(choice_->level, occluder) && counts(occluder, boxes.boxAt(place)))) {
       met_.push_back(occluder);
     }
   }

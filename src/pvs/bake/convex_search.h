@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_candidates.h"
 #include "src/pvs/bake/object_mask.h"
 #include "src/pvs/bake/segment.h"
 
@@ -49,6 +50,11 @@ class ConvexSearch {
   // hide. They come in no particular order, and are valid until the next call.
   std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
                                     const ObjectMask& known);
+  // The same without what is known to be seen, by lists of a cell that holds the region. All that is hidden
+  // from the cell must be known.
+  std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
+                                    const ObjectMask& known, const ObjectMask& seen,
+                                    const CellCandidates& lists);
   // Bounds of the triangles that a point sees: both are below `enough`, or neither is.
   struct Bounds {
     std::uint64_t least = 0, most = 0;
@@ -70,9 +76,13 @@ class ConvexSearch {
     std::uint32_t occluder = 0;
     std::vector<Shadow> of_corner{};
   };
-  // Occluders by their boxes: whatever hides something below the current node is among them. Null stands for
-  // all that may count.
-  using Candidates = const BoxLanes*;
+  // Occluders by their boxes: whatever hides something below the current node is among them.
+  struct Candidates {
+    LanesRange list{};     // without boxes: all that are useful to cells of the level
+    bool counted = false;  // those that do not count are left out
+
+    bool listed() const { return list.boxes != nullptr; }
+  };
   // False if nothing can be asked: without objects or corners, or with too many corners.
   bool start(std::span<const Vec3d> corners, const OccluderChoice& choice, const ObjectMask& known);
   // Visits nodes of the shadow tree that are the children of one, and what is below them. depth: of these
@@ -80,6 +90,9 @@ class ConvexSearch {
   bool visit(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth);
   bool visitGroup(std::uint32_t first, std::uint32_t count, Candidates candidates, std::size_t depth);
   bool visitBelow(std::uint32_t node, Candidates candidates, std::size_t depth);
+  // Bits of the nodes of a group that an occluder hides, out of those that are left.
+  std::uint32_t hideGroup(std::uint32_t first, std::uint32_t count, std::uint32_t left,
+                          Candidates candidates);
   // Bits of the nodes of a group that a recent occluder hides, out of those that are left.
   std::uint32_t hideByRecent(std::uint32_t first, std::uint32_t count, std::uint32_t left);
   // Looks for an occluder that hides the node, and returns bits of what it hides of the group; 0 if there is
@@ -89,7 +102,7 @@ class ConvexSearch {
   // Sets met_ to the candidates that some lines from the corners to the node may meet.
   void findMet(std::uint32_t node, Candidates candidates);
   // Returns those of the candidates that may hide something below a node. They are kept by its depth. Returns
-  // null if they are too many.
+  // no list if they are too many.
   Candidates candidatesBelow(std::uint32_t node, Candidates above, std::size_t depth);
   // Cones from some corners. box_of(i): the box where lines end that begin on the same side as corner i of a
   // box does.

@@ -25,6 +25,12 @@ void ObjectMask::add(std::span<const ObjectRun> runs) {
   }
 }
 
+void ObjectMask::remove(const ObjectMask& others) {
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    words_[i] &= ~others.words_[i];
+  }
+}
+
 void ObjectMask::addRun(const ObjectRun& run) {
   if (run.begin == run.end) {
     return;
