@@ -38,6 +38,10 @@ Vec3d pointIn(const CellBox& box, const Vec3d& part) {
   return {box.min.x + extent.x * part.x, box.min.y + extent.y * part.y, box.min.z + extent.z * part.z};
 }
 
+Vec3d mirrored(const Vec3d& part) {
+  return Vec3d{1.0, 1.0, 1.0} - part;
+}
+
 // A number with an unknown error of at most `doubt`.
 struct Determinant {
   double value = 0.0, doubt = 0.0;
@@ -120,6 +124,10 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
                                            double near_distance, bool look_for_lines) {
   region_ = region;
   target_ = endsIn(target.box);
+  if (target.object != kept_without_) {
+    startSearch();
+    kept_without_ = target.object;
+  }
   near_distance_ = near_distance;
   leaveOut(target.object);
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
@@ -160,13 +168,41 @@ bool FusedOcclusion::seesAnyEnd() {
 // it, so it need not follow again the lines that they followed.
 void FusedOcclusion::findCrossingsTo(std::uint32_t end) {
   if (end == traced_count_) {
-    findCrossings(startOf(region_), pointIn(target_, kEnds[end]));
+    if (end == 0) {
+      findFirstCrossings();
+    } else {
+      lines_[end] = {startOf(region_), pointIn(target_, kEnds[end])};
+      findCrossings(lines_[end].from, lines_[end].to);
+    }
     traced_[traced_count_++] = crossings_;
     return;
   }
   crossings_.clear();
   std::copy_if(traced_[end].begin(), traced_[end].end(), std::back_inserter(crossings_),
                [this](const Crossing& crossing) { return !isLeftOut(crossing.panel); });
+}
+
+// Any line of sight from the region to the target decides for all, so one that is known serves as well. Most
+// questions about less are about boxes that hold the line of one of the last questions.
+void FusedOcclusion::findFirstCrossings() {
+  for (std::uint32_t i = kept_count_; i > 0 && i + kMostKeptLines > kept_count_; --i) {
+    const KeptLine& kept = kept_lines_[(i - 1) % kMostKeptLines];
+    if (isIn(region_, kept.from) && isIn(target_, kept.to)) {
+      lines_[0] = {kept.from, kept.to};
+      crossings_ = kept.crossings;
+      return;
+    }
+  }
+  // Along each axis, every second line begins and ends in the other halves of its boxes than those between
+  // them. So two lines serve questions about all halves.
+  lines_[0] = kept_count_ % 2 == 0
+                  ? Line{startOf(region_), pointIn(target_, kEnds[0])}
+                  : Line{pointIn(region_, mirrored(kStart)), pointIn(target_, mirrored(kEnds[0]))};
+  findCrossings(lines_[0].from, lines_[0].to);
+  KeptLine& kept = kept_lines_[kept_count_++ % kMostKeptLines];
+  kept.from = lines_[0].from;
+  kept.to = lines_[0].to;
+  kept.crossings = crossings_;
 }
 
 void FusedOcclusion::leaveOut(std::uint32_t object) {
@@ -221,7 +257,7 @@ FusedOcclusion::Answer FusedOcclusion::askWithout() {
     if (clear()) {
       return Answer::kClear;
     }
-    if (hiddenBehind(startOf(region_), pointIn(target_, kEnds[end]))) {
+    if (hiddenBehind(lines_[end].from, lines_[end].to)) {
       return Answer::kHidden;
     }
     // Another end of the line helps only if this one is all that is wrong.
