@@ -1,6 +1,7 @@
 #include "src/pvs/bake/region_occlusion.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
@@ -512,6 +513,31 @@ TEST(Shaft, HoldsTheHullOfBothBoxesAndLittleMore) {
     }
   }
   EXPECT_GT(outside, 200);
+}
+
+// The same normals and levels as Shaft::misses has, which the test above compares with the hull.
+TEST(Shaft, FindsTheSidesThatAPointIsBeyondOnEveryInstructionSet) {
+  std::mt19937 random(6);
+  const auto place = [&random] {
+    const auto whole = [&] { return static_cast<double>(std::uniform_int_distribution<int>(-9, 9)(random)); };
+    return Vec3d(whole(), whole(), whole());
+  };
+  int beyond = 0, within = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d a = place(), b = place(), c = place(), d = place();
+    const Shaft shaft({min(a, b), max(a, b)}, {min(c, d), max(c, d)}, 20.0, 0.0);
+    const Vec3d point = place();
+    const std::uint32_t sides = shaft.sidesBeyond(point);
+    ASSERT_EQ(sides != 0, shaft.misses(point, point));
+    (sides != 0 ? beyond : within) += 1;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      const std::uint32_t same = shaft.sidesBeyond(point);
+      hwy::SetSupportedTargetsForTest(0);
+      ASSERT_EQ(same, sides) << hwy::TargetName(target);
+    }
+  }
+  EXPECT_GT(std::min(beyond, within), 300);
 }
 
 std::size_t bareEdges(const Panels& panels) {

@@ -11,6 +11,7 @@
 
 #include "sightline/geometry/tolerance.h"
 #include "src/pvs/bake/segment.h"
+#include "src/pvs/bake/sheet_crossings.h"
 
 namespace sightline::pvs {
 namespace {
@@ -21,7 +22,6 @@ constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
 constexpr std::size_t kMostBlockers = 8;
 // More panels than this are found in their tree rather than one after the other.
 constexpr std::size_t kMostInFocus = 2048;
-constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
 
@@ -48,11 +48,6 @@ struct Determinant {
   bool positive() const { return value > doubt; }
   bool negative() const { return value < -doubt; }
 };
-
-// Of a determinant of three vectors, from bounds of the sums of their coordinates. error: of each coordinate.
-double doubtOf(double a, double b, double c, double error) {
-  return kDeterminantRounding * a * b * c + 4.0 * error * (a * b + b * c + c * a);
-}
 
 struct Sheet {
   Vec3d a, b, c;
@@ -394,37 +389,12 @@ void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const V
   if (isLeftOut(number)) {
     return;
   }
-  const Vec3d along = to - from;
-  // One bound for all of the panel.
   const Box& bounds = panels_.bounds[number];
-  const double far = l1Norm(max(abs(Vec3d(bounds.min) - from), abs(Vec3d(bounds.max) - from))) + error_,
-               doubt = doubtOf(l1Norm(along) + error_, far, far, error_);
-  Crossing crossing{.panel = number};
-  anySheet(panels_, number, [&](const Sheet& sheet) {
-    // The signs tell on which side of the sheet's three edges the line passes.
-    const Vec3d a = sheet.a - from, b = sheet.b - from, c = sheet.c - from;
-    const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c));
-    if (std::min(ab, bc) < -doubt && std::max(ab, bc) > doubt) {
-      return false;  // whatever the third one is
-    }
-    const double ca = dot(along, cross(c, a));
-    const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});
-    if (least < -doubt && most > doubt) {
-      return false;
-    }
-    const Determinant start = sheet.sideOf(from, error_), end = sheet.sideOf(to, error_);
-    if ((start.positive() && end.positive()) || (start.negative() && end.negative())) {
-      return false;
-    }
-    const bool within = least > doubt || most < -doubt;
-    const bool forward = start.positive() && end.negative(), backward = start.negative() && end.positive();
-    crossing.in_doubt = crossing.in_doubt || !within || !(forward || backward);
-    crossing.front = crossing.front || forward;
-    crossing.sum += !within ? 0 : forward ? 1 : backward ? -1 : 0;
-    return false;
-  });
-  if (crossing.front || crossing.in_doubt || crossing.sum != 0) {
-    crossings_.push_back(crossing);
+  const double far = l1Norm(max(abs(Vec3d(bounds.min) - from), abs(Vec3d(bounds.max) - from))) + error_;
+  const SheetCrossings crossings =
+      crossSheets(panels_.vertices, panels_.sheetsOf(panels_.panels[number]), {from, to, error_}, far);
+  if (crossings.any()) {
+    crossings_.push_back({number, crossings.sum, crossings.front, crossings.in_doubt});
   }
 }
 
