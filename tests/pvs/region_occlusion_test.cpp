@@ -1,12 +1,14 @@
 #include "src/pvs/bake/region_occlusion.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -404,6 +406,82 @@ TEST(FusedOcclusion, AnswersTheSameInFocus) {
   EXPECT_GT(std::min(clear, blocked), 1000);
 }
 
+bool isIn(const CellBox& box, const Vec3d& point) {
+  return min(point, box.min) == box.min && max(point, box.max) == box.max;
+}
+
+TEST(FusedOcclusion, BeginsWithTheLineOfAnEarlierQuestionOfItsSearch) {
+  const Scene scene = sceneOf({wallOfTiles(8)});
+  const Panels panels = findPanels(scene.view());
+  FusedOcclusion questions(panels, 100.0);
+  const CellBox region{{-3, -0.5, -0.5}, {-2, 0.5, 0.5}}, target{{2, -0.5, -0.5}, {3, 0.5, 0.5}};
+  const auto lineTo = [&](const CellBox& box, std::uint32_t object = kNoObject) {
+    EXPECT_EQ(questions.ask(region, {box, object}, kNear), FusedOcclusion::Answer::kHidden);
+    return questions.proof().to;
+  };
+  const Vec3d end = lineTo(target);
+  CellBox holds = target, misses = target;
+  holds.max.x = misses.min.x = end.x + 0.01;
+  EXPECT_EQ(lineTo(holds), end);
+  EXPECT_TRUE(isIn(questions.endsIn(misses), lineTo(misses)));
+  EXPECT_EQ(lineTo(holds), end);
+  EXPECT_NE(lineTo(holds, 1), end) << "other sheets count";
+  lineTo(target);
+  questions.startSearch();
+  EXPECT_NE(lineTo(holds), end);
+}
+
+TEST(FusedOcclusion, TwoLinesServeQuestionsAboutAllHalvesOfBothBoxes) {
+  const Scene scene = sceneOf({wallOfTiles(8)});
+  const Panels panels = findPanels(scene.view());
+  FusedOcclusion questions(panels, 100.0);
+  const CellBox region{{-3, -0.5, -0.5}, {-2, 0.5, 0.5}}, target{{2, -0.5, -0.5}, {3, 0.5, 0.5}};
+  std::set<std::array<double, 3>> ends;
+  for (int half = 0; half < 12; ++half) {
+    CellBox from = region, to = target;
+    CellBox& box = half < 6 ? to : from;
+    const int axis = half / 2 % 3;
+    (half % 2 == 0 ? box.min : box.max)[axis] = box.centre()[axis];
+    ASSERT_EQ(questions.ask(from, {to}, kNear), FusedOcclusion::Answer::kHidden);
+    const Vec3d end = questions.proof().to;
+    ends.insert({end.x, end.y, end.z});
+  }
+  EXPECT_EQ(ends.size(), 2u);
+}
+
+// A search asks about ever smaller boxes, as narrowing does.
+TEST(FusedOcclusion, LinesOfEarlierQuestionsHideNothingThatALineSees) {
+  int hidden = 0, by_earlier_line = 0;
+  for (std::uint32_t seed = 1; seed <= test::rounds(60u); ++seed) {
+    std::mt19937 random(seed);
+    const Scene scene = untidyScene(random);
+    const Panels panels = findPanels(scene.view());
+    FusedOcclusion questions(panels, 100.0);
+    const CellBox space{{-6, -5, -6}, {6, 5, 6}};
+    for (int search = 0; search < 12; ++search) {
+      questions.startSearch();
+      CellBox region = partOf(space, random), target = partOf(space, random);
+      for (int question = 0; question < 12; ++question) {
+        if (questions.ask(region, {target}, kNear) == FusedOcclusion::Answer::kHidden) {
+          const FusedOcclusion::Proof& proof = questions.proof();
+          ASSERT_TRUE(isIn(region, proof.from) && isIn(questions.endsIn(target), proof.to))
+              << "seed " << seed;
+          ASSERT_FALSE(seesByLines(scene, region, target, 100, random)) << "seed " << seed;
+          ++hidden;
+          const Vec3d start = FusedOcclusion::startOf(region), mirrored = region.min + region.max - start;
+          by_earlier_line +=
+              std::min(length(proof.from - start), length(proof.from - mirrored)) > 1e-9 ? 1 : 0;
+        }
+        CellBox& part = random() % 2 == 0 ? region : target;
+        const int axis = static_cast<int>(random() % 3);
+        (random() % 2 == 0 ? part.min : part.max)[axis] = part.centre()[axis];
+      }
+    }
+  }
+  EXPECT_GT(hidden, 100);
+  EXPECT_GT(by_earlier_line, 50) << "the test would prove little";
+}
+
 // The shaft against points of the hull, and against lines that lie beside it.
 TEST(Shaft, HoldsTheHullOfBothBoxesAndLittleMore) {
   std::mt19937 random(5);
@@ -435,6 +513,31 @@ TEST(Shaft, HoldsTheHullOfBothBoxesAndLittleMore) {
     }
   }
   EXPECT_GT(outside, 200);
+}
+
+// The same normals and levels as Shaft::misses has, which the test above compares with the hull.
+TEST(Shaft, FindsTheSidesThatAPointIsBeyondOnEveryInstructionSet) {
+  std::mt19937 random(6);
+  const auto place = [&random] {
+    const auto whole = [&] { return static_cast<double>(std::uniform_int_distribution<int>(-9, 9)(random)); };
+    return Vec3d(whole(), whole(), whole());
+  };
+  int beyond = 0, within = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d a = place(), b = place(), c = place(), d = place();
+    const Shaft shaft({min(a, b), max(a, b)}, {min(c, d), max(c, d)}, 20.0, 0.0);
+    const Vec3d point = place();
+    const std::uint32_t sides = shaft.sidesBeyond(point);
+    ASSERT_EQ(sides != 0, shaft.misses(point, point));
+    (sides != 0 ? beyond : within) += 1;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      const std::uint32_t same = shaft.sidesBeyond(point);
+      hwy::SetSupportedTargetsForTest(0);
+      ASSERT_EQ(same, sides) << hwy::TargetName(target);
+    }
+  }
+  EXPECT_GT(std::min(beyond, within), 300);
 }
 
 std::size_t bareEdges(const Panels& panels) {
@@ -605,7 +708,7 @@ TEST(RegionOcclusion, ALineInThePlaneOfWhatBlockedAnotherIsClearBesideIt) {
   }
 }
 
-TEST(RegionOcclusion, AnswersDoNotDependOnEarlierQuestions) {
+TEST(RegionOcclusion, AnswersDoNotDependOnEarlierSearches) {
   std::map<FusedOcclusion::Answer, int> answers;
   int clear_lines = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -622,6 +725,7 @@ TEST(RegionOcclusion, AnswersDoNotDependOnEarlierQuestions) {
       const std::uint32_t left_out = random() % 2 == 0 ? object : kNoObject;
       FusedOcclusion fresh(panels, 100.0), fresh_for_line(panels, 100.0);
       const FusedOcclusion::Answer answer = fresh.ask({at, at + Vec3d{0.5, 0.5, 0.5}}, target, kNear);
+      asked_before.startSearch();
       ASSERT_EQ(asked_before.ask({at, at + Vec3d{0.5, 0.5, 0.5}}, target, kNear), answer) << "seed " << seed;
       const Vec3d end = placeIn(target.box, random);
       const bool is_clear = fresh_for_line.isClear(at, end, left_out);

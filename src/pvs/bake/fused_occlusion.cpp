@@ -11,6 +11,7 @@
 
 #include "sightline/geometry/tolerance.h"
 #include "src/pvs/bake/segment.h"
+#include "src/pvs/bake/sheet_crossings.h"
 
 namespace sightline::pvs {
 namespace {
@@ -21,7 +22,6 @@ constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
 constexpr std::size_t kMostBlockers = 8;
 // More panels than this are found in their tree rather than one after the other.
 constexpr std::size_t kMostInFocus = 2048;
-constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
 
@@ -38,17 +38,16 @@ Vec3d pointIn(const CellBox& box, const Vec3d& part) {
   return {box.min.x + extent.x * part.x, box.min.y + extent.y * part.y, box.min.z + extent.z * part.z};
 }
 
+Vec3d mirrored(const Vec3d& part) {
+  return Vec3d{1.0, 1.0, 1.0} - part;
+}
+
 // A number with an unknown error of at most `doubt`.
 struct Determinant {
   double value = 0.0, doubt = 0.0;
   bool positive() const { return value > doubt; }
   bool negative() const { return value < -doubt; }
 };
-
-// Of a determinant of three vectors, from bounds of the sums of their coordinates. error: of each coordinate.
-double doubtOf(double a, double b, double c, double error) {
-  return kDeterminantRounding * a * b * c + 4.0 * error * (a * b + b * c + c * a);
-}
 
 struct Sheet {
   Vec3d a, b, c;
@@ -120,6 +119,10 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
                                            double near_distance, bool look_for_lines) {
   region_ = region;
   target_ = endsIn(target.box);
+  if (target.object != kept_without_) {
+    startSearch();
+    kept_without_ = target.object;
+  }
   near_distance_ = near_distance;
   leaveOut(target.object);
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
@@ -160,13 +163,41 @@ bool FusedOcclusion::seesAnyEnd() {
 // it, so it need not follow again the lines that they followed.
 void FusedOcclusion::findCrossingsTo(std::uint32_t end) {
   if (end == traced_count_) {
-    findCrossings(startOf(region_), pointIn(target_, kEnds[end]));
+    if (end == 0) {
+      findFirstCrossings();
+    } else {
+      lines_[end] = {startOf(region_), pointIn(target_, kEnds[end])};
+      findCrossings(lines_[end].from, lines_[end].to);
+    }
     traced_[traced_count_++] = crossings_;
     return;
   }
   crossings_.clear();
   std::copy_if(traced_[end].begin(), traced_[end].end(), std::back_inserter(crossings_),
                [this](const Crossing& crossing) { return !isLeftOut(crossing.panel); });
+}
+
+// Any line of sight from the region to the target decides for all, so one that is known serves as well. Most
+// questions about less are about boxes that hold the line of one of the last questions.
+void FusedOcclusion::findFirstCrossings() {
+  for (std::uint32_t i = kept_count_; i > 0 && i + kMostKeptLines > kept_count_; --i) {
+    const KeptLine& kept = kept_lines_[(i - 1) % kMostKeptLines];
+    if (isIn(region_, kept.from) && isIn(target_, kept.to)) {
+      lines_[0] = {kept.from, kept.to};
+      crossings_ = kept.crossings;
+      return;
+    }
+  }
+  // Along each axis, every second line begins and ends in the other halves of its boxes than those between
+  // them. So two lines serve questions about all halves.
+  lines_[0] = kept_count_ % 2 == 0
+                  ? Line{startOf(region_), pointIn(target_, kEnds[0])}
+                  : Line{pointIn(region_, mirrored(kStart)), pointIn(target_, mirrored(kEnds[0]))};
+  findCrossings(lines_[0].from, lines_[0].to);
+  KeptLine& kept = kept_lines_[kept_count_++ % kMostKeptLines];
+  kept.from = lines_[0].from;
+  kept.to = lines_[0].to;
+  kept.crossings = crossings_;
 }
 
 void FusedOcclusion::leaveOut(std::uint32_t object) {
@@ -221,7 +252,7 @@ FusedOcclusion::Answer FusedOcclusion::askWithout() {
     if (clear()) {
       return Answer::kClear;
     }
-    if (hiddenBehind(startOf(region_), pointIn(target_, kEnds[end]))) {
+    if (hiddenBehind(lines_[end].from, lines_[end].to)) {
       return Answer::kHidden;
     }
     // Another end of the line helps only if this one is all that is wrong.
@@ -358,37 +389,12 @@ void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const V
   if (isLeftOut(number)) {
     return;
   }
-  const Vec3d along = to - from;
-  // One bound for all of the panel.
   const Box& bounds = panels_.bounds[number];
-  const double far = l1Norm(max(abs(Vec3d(bounds.min) - from), abs(Vec3d(bounds.max) - from))) + error_,
-               doubt = doubtOf(l1Norm(along) + error_, far, far, error_);
-  Crossing crossing{.panel = number};
-  anySheet(panels_, number, [&](const Sheet& sheet) {
-    // The signs tell on which side of the sheet's three edges the line passes.
-    const Vec3d a = sheet.a - from, b = sheet.b - from, c = sheet.c - from;
-    const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c));
-    if (std::min(ab, bc) < -doubt && std::max(ab, bc) > doubt) {
-      return false;  // whatever the third one is
-    }
-    const double ca = dot(along, cross(c, a));
-    const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});
-    if (least < -doubt && most > doubt) {
-      return false;
-    }
-    const Determinant start = sheet.sideOf(from, error_), end = sheet.sideOf(to, error_);
-    if ((start.positive() && end.positive()) || (start.negative() && end.negative())) {
-      return false;
-    }
-    const bool within = least > doubt || most < -doubt;
-    const bool forward = start.positive() && end.negative(), backward = start.negative() && end.positive();
-    crossing.in_doubt = crossing.in_doubt || !within || !(forward || backward);
-    crossing.front = crossing.front || forward;
-    crossing.sum += !within ? 0 : forward ? 1 : backward ? -1 : 0;
-    return false;
-  });
-  if (crossing.front || crossing.in_doubt || crossing.sum != 0) {
-    crossings_.push_back(crossing);
+  const double far = l1Norm(max(abs(Vec3d(bounds.min) - from), abs(Vec3d(bounds.max) - from))) + error_;
+  const SheetCrossings crossings =
+      crossSheets(panels_.vertices, panels_.sheetsOf(panels_.panels[number]), {from, to, error_}, far);
+  if (crossings.any()) {
+    crossings_.push_back({number, crossings.sum, crossings.front, crossings.in_doubt});
   }
 }
 

@@ -37,6 +37,10 @@ class FusedOcclusion {
   // of sight are tried before the question is asked again, which spares that where one of them is clear.
   Answer ask(const CellBox& region, const FusedTarget& target, double near_distance,
              bool look_for_lines = true);
+  // Begins a search: questions that are asked from now on follow no line of sight of those before. Within a
+  // search, a question begins with the last line of an earlier one that leads from its region to its target,
+  // and follows a new one only where there is none.
+  void startSearch() { kept_count_ = 0; }
   // The line of sight that showed it, and the object of a sheet that the line crosses. Of the last question
   // that was answered kHidden.
   struct Proof {
@@ -56,7 +60,8 @@ class FusedOcclusion {
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
   // The box where lines of sight to a target may end.
   CellBox endsIn(const CellBox& target) const;
-  // Where all lines of sight from a region begin that ask() tries.
+  // Where lines of sight from a region begin that ask() tries: all those of the first question of a search,
+  // and most of the others that it follows.
   static Vec3d startOf(const CellBox& region);
   // A box around all panels that were followed, or found next to those, since the last call.
   Box takeFollowed() { return std::exchange(followed_, {}); }
@@ -96,6 +101,8 @@ class FusedOcclusion {
   // Notes that its object keeps a surface from hiding anything.
   void addSpoiler(std::uint32_t panel);
   void findCrossingsTo(std::uint32_t end);
+  // Sets lines_[0] and crossings_ to those that the question begins with.
+  void findFirstCrossings();
   bool hiddenBehind(const Vec3d& from, const Vec3d& to);
   bool isCrossedOften(std::uint32_t component, const Vec3d& end);
   void findCrossings(const Vec3d& from, const Vec3d& to);
@@ -133,19 +140,34 @@ class FusedOcclusion {
   Shaft shaft_;
   Proof proof_;
   std::vector<Crossing> crossings_;
-  // By end: the crossings of a line of sight, with all that are not left out when it is first followed.
+  // A line of sight that a question began with, and its crossings with all but the target's own object.
+  struct KeptLine {
+    Vec3d from, to;
+    std::vector<Crossing> crossings;
+  };
+  static constexpr std::uint32_t kMostKeptLines = 32;
+  // Of this search: line i is at i % kMostKeptLines, so that the last ones are there.
+  std::array<KeptLine, kMostKeptLines> kept_lines_;
+  std::uint32_t kept_count_ = 0;
+  std::uint32_t kept_without_ = kNoObject;  // FusedTarget::object of their questions
+  struct Line {
+    Vec3d from, to;
+  };
+  // By end: the line of sight that is followed, and its crossings with all that are not left out when it is
+  // first followed.
+  std::array<Line, kEndCount> lines_;
   std::array<std::vector<Crossing>, kEndCount> traced_;
   std::uint32_t traced_count_ = 0;
+  static bool isIn(const CellBox& box, const Vec3d& point) {
+    return min(point, box.min) == box.min && max(point, box.max) == box.max;
+  }
   // The panels that lines of sight from one box to the other may meet.
   struct InFocus {
     CellBox from{}, to{};
     bool set = false;
     BoxLanes panels{};
 
-    bool holds(const Vec3d& a, const Vec3d& b) const {
-      return set && min(a, from.min) == from.min && max(a, from.max) == from.max &&
-             min(b, to.min) == to.min && max(b, to.max) == to.max;
-    }
+    bool holds(const Vec3d& a, const Vec3d& b) const { return set && isIn(from, a) && isIn(to, b); }
   };
   std::array<InFocus, 3> foci_;
   std::vector<std::uint32_t> found_;     // places in one of these, or in the tree of panels

@@ -88,6 +88,7 @@ RegionOcclusion::RegionOcclusion(const Panels& panels, double near_distance, dou
     : fused_(panels, magnitude, most_repeats), near_distance_(near_distance) {}
 
 bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort) {
+  fused_.startSearch();
   return decide(region, target, effort) == Answer::kHidden;
 }
 

@@ -6,6 +6,11 @@
 
 #include "sightline/geometry/tolerance.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/pvs/bake/shaft.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
 // Both boxes have the same three directions of edges, so every face of their hull either is perpendicular to
 // an axis, or contains an edge of each box that is parallel to an axis: its normal has a zero there, and lies
 // in one quadrant of the two other axes (Haines and Wallace 1991). In that quadrant the farthest corners of
@@ -13,8 +18,43 @@
 //
 // Any normal would be safe, since the level is that of the farther corner.
 
+HWY_BEFORE_NAMESPACE();
+namespace sightline::pvs {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Four bits for each axis: the sides whose normals are across it that the point is beyond. No fused
+// operations: they would round differently on different instruction sets.
+std::uint32_t slantedBeyond(const std::array<Shaft::Sides, 3>& slanted, const Vec3d& point) {
+  constexpr hn::CappedTag<double, 4> kLanes;
+  const auto x = hn::Set(kLanes, point.x), y = hn::Set(kLanes, point.y), z = hn::Set(kLanes, point.z);
+  std::uint32_t beyond = 0;
+  const auto add = [&](const Shaft::Sides& across, auto i, auto j, std::uint32_t bit) HWY_ATTR {
+    for (std::size_t first = 0; first < 4; first += hn::Lanes(kLanes)) {
+      const auto place = hn::Add(hn::Mul(hn::Load(kLanes, across.normal_i.data() + first), i),
+                                 hn::Mul(hn::Load(kLanes, across.normal_j.data() + first), j));
+      const auto is_beyond = hn::Gt(place, hn::Load(kLanes, across.level.data() + first));
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(kLanes, is_beyond, &bits);
+      beyond |= std::uint32_t{bits} << (bit + first);
+    }
+  };
+  add(slanted[0], y, z, 0);
+  add(slanted[1], z, x, 4);
+  add(slanted[2], x, y, 8);
+  return beyond;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::pvs
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace sightline::pvs {
 namespace {
+
+HWY_EXPORT(slantedBeyond);
 
 constexpr double kProductRounding = 0x1p-48;  // as a fraction of the normal and the point, 32 u
 
@@ -43,8 +83,9 @@ Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, dou
         const double normal_i = side_i * std::abs(along_j), normal_j = side_j * std::abs(along_i);
         const double level =
             std::max(normal_i * from_i + normal_j * from_j, normal_i * to_i + normal_j * to_j);
-        across.sides[across.count++] = {normal_i, normal_j,
-                                        level + rounding * (std::abs(normal_i) + std::abs(normal_j))};
+        across.normal_i[across.count] = normal_i;
+        across.normal_j[across.count] = normal_j;
+        across.level[across.count++] = level + rounding * (std::abs(normal_i) + std::abs(normal_j));
       }
     }
   }
@@ -61,10 +102,9 @@ bool Shaft::misses(const Box& box) const {
     const int i = (zero + 1) % 3, j = (zero + 2) % 3;
     const Sides& across = slanted_[static_cast<std::size_t>(zero)];
     for (std::uint32_t s = 0; s < across.count; ++s) {
-      const Side& side = across.sides[s];
-      const double nearest_i = side.normal_i > 0.0 ? low[i] : high[i],
-                   nearest_j = side.normal_j > 0.0 ? low[j] : high[j];
-      if (side.normal_i * nearest_i + side.normal_j * nearest_j > side.level) {
+      const double nearest_i = across.normal_i[s] > 0.0 ? low[i] : high[i],
+                   nearest_j = across.normal_j[s] > 0.0 ? low[j] : high[j];
+      if (across.normal_i[s] * nearest_i + across.normal_j[s] * nearest_j > across.level[s]) {
         return true;
       }
     }
@@ -78,16 +118,7 @@ std::uint32_t Shaft::sidesBeyond(const Vec3d& point) const {
     beyond |= std::uint32_t{point[axis] > high_[axis]} << bit++;
     beyond |= std::uint32_t{point[axis] < low_[axis]} << bit++;
   }
-  const auto addSlanted = [&](const Sides& across, double i, double j) {
-    for (std::uint32_t s = 0; s < across.count; ++s) {
-      const Side& side = across.sides[s];
-      beyond |= std::uint32_t{side.normal_i * i + side.normal_j * j > side.level} << bit++;
-    }
-  };
-  addSlanted(slanted_[0], point.y, point.z);
-  addSlanted(slanted_[1], point.z, point.x);
-  addSlanted(slanted_[2], point.x, point.y);
-  return beyond;
+  return beyond | (HWY_DYNAMIC_DISPATCH(slantedBeyond)(slanted_, point) << bit);
 }
 
 // What is left of the segment within all sides. The levels are farther out than the products are off, so
@@ -116,9 +147,9 @@ bool Shaft::misses(const Vec3d& from, const Vec3d& to) const {
     const int i = (zero + 1) % 3, j = (zero + 2) % 3;
     const Sides& across = slanted_[static_cast<std::size_t>(zero)];
     for (std::uint32_t s = 0; s < across.count; ++s) {
-      const Side& side = across.sides[s];
-      if (isBeyond(side.normal_i * from[i] + side.normal_j * from[j] - side.level,
-                   side.normal_i * to[i] + side.normal_j * to[j] - side.level)) {
+      const double normal_i = across.normal_i[s], normal_j = across.normal_j[s], level = across.level[s];
+      if (isBeyond(normal_i * from[i] + normal_j * from[j] - level,
+                   normal_i * to[i] + normal_j * to[j] - level)) {
         return true;
       }
     }
@@ -127,3 +158,4 @@ bool Shaft::misses(const Vec3d& from, const Vec3d& to) const {
 }
 
 }  // namespace sightline::pvs
+#endif

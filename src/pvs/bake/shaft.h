@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "src/pvs/bake/cell_region.h"
 
@@ -14,6 +15,16 @@ inline constexpr double kAlongSegment = 0x1p-40;
 
 class Shaft {
  public:
+  // Slanted sides, whose normals are across one axis: all of the shaft has
+  // normal_i * x_i + normal_j * x_j <= level along the two other axes, however the products are rounded. At
+  // most one side for each quadrant of these. Nothing is beyond those from `count` on.
+  struct Sides {
+    Sides() { level.fill(std::numeric_limits<double>::infinity()); }
+
+    alignas(32) std::array<double, 4> normal_i{}, normal_j{}, level;
+    std::uint32_t count = 0;
+  };
+
   Shaft() = default;
   // magnitude: an upper bound of the absolute coordinates of both boxes and of whatever is asked about,
   // metres. slack: how far what is asked about may be off.
@@ -27,20 +38,8 @@ class Shaft {
   std::uint32_t sidesBeyond(const Vec3d& point) const;
 
  private:
-  // All of the shaft has low <= x along each axis, x <= high, and for each slanted side, whose normal is
-  // across one axis, normal_i * x_i + normal_j * x_j <= level along the two others, however the products are
-  // rounded.
-  struct Side {
-    double normal_i = 0.0, normal_j = 0.0, level = 0.0;
-  };
-  // By the axis that the normals are across: at most one side for each quadrant of the other two.
-  struct Sides {
-    std::array<Side, 4> sides{};
-    std::uint32_t count = 0;
-  };
-
-  Vec3d low_, high_;
-  std::array<Sides, 3> slanted_{};
+  Vec3d low_, high_;                // of all of the shaft
+  std::array<Sides, 3> slanted_{};  // by the axis that the normals are across
 };
 
 }  // namespace sightline::pvs
