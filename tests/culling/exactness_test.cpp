@@ -16,6 +16,7 @@ using namespace demo_frames;
 // Takes a few consecutive frames at several places of each camera path, with a jump from place to place.
 void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
   Judge judge(demo);
+  places = test::rounds(places);
   for (const CameraPath& path : demo.scene.paths) {
     for (std::size_t place = 0; place < places; ++place) {
       const std::size_t first = path.frames.size() * place / places;
@@ -25,17 +26,17 @@ void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
       }
     }
   }
-  EXPECT_GT(judge.counts.seen, 100u);
-  EXPECT_GT(judge.counts.hidden, 100u);
+  EXPECT_GT(judge.counts.seen, test::rounds(100u));
+  EXPECT_GT(judge.counts.hidden, test::rounds(100u));
 }
 
 void judgeJumps(const DemoScene& demo, std::uint64_t seed, std::size_t count) {
   Judge judge(demo);
-  const std::vector<View> views = jumps(demo, seed, count);
+  const std::vector<View> views = jumps(demo, seed, test::rounds(count));
   for (std::size_t i = 0; i < views.size(); ++i) {
     judge.judge(views[i], "seed " + std::to_string(seed) + " jump " + std::to_string(i));
   }
-  EXPECT_GT(judge.counts.hidden, 100u);
+  EXPECT_GT(judge.counts.hidden, test::rounds(100u));
 }
 
 // Follows each camera path from several places, so that surfaces know what hid something, what rests and for

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/culling/ray_judge.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -146,8 +147,8 @@ INSTANTIATE_TEST_SUITE_P(, DetailObjects, kScenes, kSceneName);
 TEST_P(KeptRelations, ChangeNoAnswerAlongTheWalk) {
   for (const HierarchyKind kind : kKinds) {
     AnyCuller with = demo().culler(kind, throughBox()), without = demo().culler(kind, throughBox(false));
-    expectSameAnswers(with, without, walk(50, 160), nameOf(kind));
-    EXPECT_GT(with.statistic("relations", "kept"), 100u);
+    expectSameAnswers(with, without, walk(50, test::rounds(160u)), nameOf(kind));
+    EXPECT_GT(with.statistic("relations", "kept"), test::rounds(100u));
     EXPECT_EQ(without.statistic("relations", "kept") + without.statistic("relations", "reused"), 0u);
   }
 }

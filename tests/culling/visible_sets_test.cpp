@@ -11,6 +11,7 @@
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/culling/kept_objects.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -421,8 +422,9 @@ void judgeWalk(const DemoScene& demo, const std::vector<View>& views, const std:
 }
 
 TEST(VisibleSets, NothingThatRaysSeeIsCulledOnWalks) {
-  judgeWalk(smallCity(), smallCity().frames(smallCity().scene.paths[0], 100, 14), "city");
-  judgeWalk(smallBuilding(), smallBuilding().frames(smallBuilding().scene.paths[0], 200, 14), "building");
+  judgeWalk(smallCity(), smallCity().frames(smallCity().scene.paths[0], 100, test::rounds(14u)), "city");
+  judgeWalk(smallBuilding(), smallBuilding().frames(smallBuilding().scene.paths[0], 200, test::rounds(14u)),
+            "building");
 }
 
 TEST(VisibleSets, NothingThatRaysSeeIsCulledAfterJumps) {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/rounds.h"
+
 namespace sightline::geometry {
 namespace {
 
@@ -285,7 +287,7 @@ Vec3d directionAtBox(Random& random, const Case& c) {
 
 TEST(BoxTangents, RandomBoxesAndLinesThatTouchThemAreRight) {
   int misses = 0, meets = 0;
-  for (std::uint64_t seed = 1; seed <= 100000 && !HasFailure(); ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(100000u) && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const int size = random.oneIn(2) ? 10 : 1000;
@@ -304,8 +306,8 @@ TEST(BoxTangents, RandomBoxesAndLinesThatTouchThemAreRight) {
     check(kAllVertices, c);
     missed ? ++misses : ++meets;
   }
-  EXPECT_GT(misses, 20000);
-  EXPECT_GT(meets, 20000);
+  EXPECT_GT(misses, test::rounds(20000));
+  EXPECT_GT(meets, test::rounds(20000));
 }
 
 // Two vectors of the plane, of about 38 bits, whose determinant is 1: adding a multiple of one to the other

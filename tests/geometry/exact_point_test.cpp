@@ -1,6 +1,7 @@
 // Exact points and their predicates against rational numbers, mostly on ties.
 
 #include "src/geometry/exact_point.h"
+#include "tests/support/rounds.h"
 
 #include <gtest/gtest.h>
 
@@ -125,7 +126,7 @@ TEST(ExactPoint, DefinedPointsAreRoundedOnce) {
   int points = 0;
   for (int kind = 0; kind < kKinds; ++kind) {
     Coordinates coordinates(70 + kind);
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < test::rounds(200); ++i) {
       std::vector<Vec3d> p;
       for (int k = 0; k < 9; ++k) {
         p.push_back(coordinates.next(kind));
@@ -165,7 +166,7 @@ TEST(ExactPoint, DefinedPointsAreRoundedOnce) {
       }
     }
   }
-  EXPECT_GT(points, 1000);
+  EXPECT_GT(points, test::rounds(1000));
 }
 
 TEST(ExactPoint, ComparesAndTurnsAsRationalNumbersDo) {
@@ -173,7 +174,7 @@ TEST(ExactPoint, ComparesAndTurnsAsRationalNumbersDo) {
   int ties = 0;
   for (int kind = 0; kind < 3; ++kind) {
     Coordinates coordinates(700 + kind);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < test::rounds(60); ++i) {
       std::vector<Vec3d> p;
       for (int k = 0; k < 6; ++k) {
         p.push_back(coordinates.next(kind));
@@ -206,7 +207,7 @@ TEST(ExactPoint, ComparesAndTurnsAsRationalNumbersDo) {
       }
     }
   }
-  EXPECT_GT(ties, 1000);
+  EXPECT_GT(ties, test::rounds(1000));
 }
 
 TEST(ExactPoint, CoordinatesOutOfReachAreToldApart) {

@@ -10,6 +10,7 @@
 #include "scenes/procedural.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "tests/hierarchy/box_families.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -291,7 +292,7 @@ TEST(BoxTree, CountsOfTrianglesSaturate) {
 
 // What makes trees deep, wide, or slow to build where nothing bounds them.
 TEST(BoxTree, NoInputMakesItDeepOrWide) {
-  constexpr std::size_t kCount = 60000;
+  constexpr std::size_t kCount = test::rounds(60000);
   Random random(31);
   std::vector<std::pair<const char*, std::vector<Box>>> inputs;
   inputs.emplace_back("identical", std::vector<Box>(kCount, Box{{1, 1, 1}, {2, 2, 2}}));

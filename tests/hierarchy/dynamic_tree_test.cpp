@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/random_numbers.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::hierarchy {
 namespace {
@@ -223,7 +224,7 @@ std::vector<std::uint32_t> found(const DynamicTree& tree, const Box& wanted) {
 // searches find what a search of all boxes finds, and no call does more than it may.
 TEST(DynamicTree, IsBuiltAnewInSlicesWhileItChanges) {
   constexpr std::uint32_t kNumbers = 12000;
-  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+  for (std::uint32_t seed = 0; seed < 3 * test::rounds(2u); ++seed) {
     RandomBoxes random(seed);
     DynamicTree tree;
     Boxes boxes;
@@ -403,7 +404,7 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
     RandomBoxes random(seed);
     DynamicTree tree;
     Boxes boxes;
-    const std::uint32_t numbers = seed == 3 ? 10 : 6000;
+    const std::uint32_t numbers = seed == 3 ? 10 : test::rounds(6000u);
     const auto change = [&](std::uint32_t number) {
       const Box box = random.next(100.0f, 2.0f);
       if (!tree.has(number)) {

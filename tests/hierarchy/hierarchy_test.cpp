@@ -9,6 +9,7 @@
 
 #include "scenes/procedural.h"
 #include "tests/hierarchy/box_families.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -216,7 +217,7 @@ TEST(Hierarchy, OfNothingIsEmptyAndOfOneObjectIsALeaf) {
 
 TEST(Hierarchy, OfAHundredThousandObjectsHasSmallLeavesAndLittleDepth) {
   Random random(11);
-  const std::vector<Box> boxes = boxesOf(Family::kScattered, 100000, random);
+  const std::vector<Box> boxes = boxesOf(Family::kScattered, test::rounds(100000u), random);
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
     EXPECT_EQ(whatIsWrong(hierarchy, boxes), "") << nameOf(kind);

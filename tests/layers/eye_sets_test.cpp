@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/layers/made_parts.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -106,7 +107,7 @@ TEST(EyeSets, HaveExactlyTheArcsOfTheirConvexHull) {
 
 TEST(EyeSets, WhatOccludesForSomeEyeOfTheSetIsInTheOrder) {
   std::size_t only_between = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(60u); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const EyeScene scene = randomEyes(random, 7);
@@ -125,7 +126,7 @@ TEST(EyeSets, WhatOccludesForSomeEyeOfTheSetIsInTheOrder) {
     }
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(only_between, 20u);  // arcs that the order of one eye lacks
+  EXPECT_GT(only_between, test::rounds(20u));  // arcs that the order of one eye lacks
 }
 
 TEST(EyeSets, RulesAllowWhatTheyAllowForOneOfTheEyes) {
@@ -179,7 +180,7 @@ TEST(EyeSets, InAnOrthographicViewThereAreNone) {
 TEST(EyeSets, SweptPartsHaveAnOrderThatHoldsAtAllTimes) {
   constexpr int kTimes = 8;
   std::size_t pairs = 0, groups = 0, crossings = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(40u); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     MadeScene first = randomScene(random, 6, 6), last = first;
@@ -222,9 +223,9 @@ TEST(EyeSets, SweptPartsHaveAnOrderThatHoldsAtAllTimes) {
     }
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(pairs, 500u);
-  EXPECT_GT(groups, 80u);
-  EXPECT_GT(crossings, 50u);  // arcs that the order of the first time lacks
+  EXPECT_GT(pairs, test::rounds(500u));
+  EXPECT_GT(groups, test::rounds(80u));
+  EXPECT_GT(crossings, test::rounds(50u));  // arcs that the order of the first time lacks
 }
 
 TEST(EyeSets, ASweptHullIsTheHullOfAllPlacesAndNoMore) {

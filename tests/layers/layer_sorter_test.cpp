@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/layers/made_parts.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -159,7 +160,7 @@ void changeSomething(MadeScene& scene, LayerSorter& sorter, Random& random) {
 }
 
 TEST(LayerSorter, SaysInEveryFrameWhatAFreshOneSays) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(12u); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random common(seed);
     const std::uint32_t pair_expiry = common.below(4), rebuild_after = common.below(3),

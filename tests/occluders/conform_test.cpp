@@ -18,6 +18,7 @@
 #include "src/occluders/bend_triangles.h"
 #include "src/occluders/edge_vertices.h"
 #include "tests/occluders/conform_judge.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::occluders {
 namespace {
@@ -120,7 +121,7 @@ constexpr NamedFamily kFamilies[] = {{"small whole numbers", smallWholeNumbers},
 TEST(Conform, PiecesTileTheirTrianglesAndMeetInCommonEdgesOnly) {
   ContactCounts all;
   for (const NamedFamily& family : kFamilies) {
-    for (unsigned seed = 0; seed < 8; ++seed) {
+    for (unsigned seed = 0; seed < test::rounds(8u); ++seed) {
       SCOPED_TRACE(std::string(family.name) + ", seed " + std::to_string(seed));
       const ConformedMesh mesh = judged(family.make(seed));
       all.points += mesh.contacts.points;
@@ -133,11 +134,11 @@ TEST(Conform, PiecesTileTheirTrianglesAndMeetInCommonEdgesOnly) {
       }
     }
   }
-  EXPECT_GT(all.points, 10u);
-  EXPECT_GT(all.edges_on_edges, 3u);
-  EXPECT_GT(all.edges_in_faces, 30u);
-  EXPECT_GT(all.penetrations, 70u);
-  EXPECT_GT(all.overlaps, 35u);
+  EXPECT_GT(all.points, test::rounds(10u));
+  EXPECT_GT(all.edges_on_edges, test::rounds(3u));
+  EXPECT_GT(all.edges_in_faces, test::rounds(30u));
+  EXPECT_GT(all.penetrations, test::rounds(70u));
+  EXPECT_GT(all.overlaps, test::rounds(35u));
 }
 
 // Every triangle as the positions of its corners, the least first, and its source; in order.
@@ -258,7 +259,7 @@ TEST(Conform, GreedilyMergedVoxelsBecomeWatertight) {
 }
 
 TEST(Conform, BoxesPushedIntoEachOtherStayClosed) {
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < 3 * test::rounds(2u); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     Soup soup;
@@ -368,7 +369,7 @@ ConformedMesh joined(const Soup& soup, std::span<const std::uint8_t> open) {
 
 TEST(JoinEdges, LeavesNoVertexWithinAnEdge) {
   for (const NamedFamily& family : kFamilies) {
-    for (unsigned seed = 0; seed < 40; ++seed) {
+    for (unsigned seed = 0; seed < test::rounds(40u); ++seed) {
       SCOPED_TRACE(std::string(family.name) + ", seed " + std::to_string(seed));
       const Soup soup = family.make(seed);
       const ConformedMesh mesh = joined(soup, std::vector<std::uint8_t>(soup.count(), 0b111));
@@ -376,7 +377,7 @@ TEST(JoinEdges, LeavesNoVertexWithinAnEdge) {
       ConformJudge(soup, mesh).judgeBorders();
     }
   }
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < test::rounds(20u); ++seed) {
     const Soup voxels = greedyVoxels(seed, 6);
     EXPECT_GT(boundaryEdges(voxels.triangles), 0u);
     EXPECT_EQ(boundaryEdges(joined(voxels, std::vector<std::uint8_t>(voxels.count(), 0b111)).triangles), 0u);

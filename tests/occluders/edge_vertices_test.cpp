@@ -15,6 +15,7 @@
 
 #include "tests/occluders/conform_judge.h"
 #include "tests/occluders/triangle_soup.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::occluders {
 namespace {
@@ -179,7 +180,7 @@ void addStepped(Edges& edges, const Vec3d& from, int steps, int digits, bool fla
 
 TEST(VerticesOnEdges, AreFoundAtFewPlacesAndAtMany) {
   std::size_t found = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < test::rounds(60u); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SoupRandom random(seed);
     Edges edges;
@@ -195,12 +196,12 @@ TEST(VerticesOnEdges, AreFoundAtFewPlacesAndAtMany) {
     }
     found += edges.judge();
   }
-  EXPECT_GT(found, 500u);
+  EXPECT_GT(found, test::rounds(500u));
 }
 
 TEST(VerticesOnEdges, AreFoundAlongAxesAndAtEqualPlaces) {
   std::size_t found = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < test::rounds(60u); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SoupRandom random(seed);
     Edges edges;
@@ -228,7 +229,7 @@ TEST(VerticesOnEdges, AreFoundAlongAxesAndAtEqualPlaces) {
     }
     found += edges.judge();
   }
-  EXPECT_GT(found, 300u);
+  EXPECT_GT(found, test::rounds(300u));
 }
 
 TEST(VerticesOnEdges, AreFoundAcrossZeroAndAmongTheSmallestNumbers) {

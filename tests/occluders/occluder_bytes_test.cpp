@@ -9,6 +9,7 @@
 #include "scenes/procedural.h"
 #include "sightline/occluders/occluder_set.h"
 #include "tests/support/cut_off.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -105,7 +106,7 @@ TEST(OccluderBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
   std::mt19937 random(1);
   std::size_t refused = 0;
   double sum = 0.0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < test::rounds(2000); ++i) {
     LargeVector<std::byte> changed = bytes;
     for (int k = 0; k < 3; ++k) {
       changed[random() % changed.size()] = static_cast<std::byte>(random());
@@ -127,7 +128,7 @@ TEST(OccluderBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
     }
   }
   EXPECT_TRUE(std::isfinite(sum));
-  EXPECT_GT(refused, 100u);
+  EXPECT_GT(refused, test::rounds(100u));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "scenes/procedural.h"
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -239,7 +240,7 @@ TEST(OccluderDatabase, ListsHoldTheBestOfAllOccludersOfDemoScenes) {
       const OccluderDatabase database = OccluderDatabase::build(model->kd_tree, model->set, settings);
       ASSERT_GT(database.cellCount(), 50u);
       Random random(7);
-      for (std::uint32_t i = 0; i < 150; ++i) {
+      for (std::uint32_t i = 0; i < test::rounds(150u); ++i) {
         const std::uint32_t cell = random.below(database.cellCount());
         const std::uint32_t direction = random.below(database.directionCount());
         EXPECT_TRUE(holdsTheBest(*model, database, cell, direction, settings))
@@ -270,7 +271,7 @@ bool surelyInCone(const Model& model, const Occluder& occluder, const View& view
 
 TEST(OccluderDatabase, LosesNoneThatIsWorthMoreFromSomeViewpointThanTheLastEntry) {
   std::size_t checked = 0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(30u); ++seed) {
     Random random(seed);
     const Model any = crowd(random, 300);
     const Model& model = seed % 3 == 0 ? smallCity() : seed % 3 == 1 ? smallBuilding() : any;
@@ -305,7 +306,7 @@ TEST(OccluderDatabase, LosesNoneThatIsWorthMoreFromSomeViewpointThanTheLastEntry
       }
     }
   }
-  EXPECT_GT(checked, 2000u);
+  EXPECT_GT(checked, test::rounds(2000u));
 }
 
 TEST(OccluderDatabase, LeavesOutWhatIsSeenFromBehindOrNotInTheCone) {

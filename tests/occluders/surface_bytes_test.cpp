@@ -9,6 +9,7 @@
 #include "scenes/procedural.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/support/cut_off.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -84,7 +85,7 @@ TEST(SurfaceBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
   const LargeVector<std::byte> bytes = surfaceBytes(village.surfaces);
   std::mt19937 random(1);
   std::size_t refused = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::rounds(3000); ++i) {
     LargeVector<std::byte> changed = bytes;
     for (int k = 0; k < 3; ++k) {
       changed[random() % changed.size()] = static_cast<std::byte>(random());
@@ -95,7 +96,7 @@ TEST(SurfaceBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
       walkThrough(*read);
     }
   }
-  EXPECT_GT(refused, 300u);
+  EXPECT_GT(refused, test::rounds(300u));
 }
 
 TEST(SurfaceBytes, WithNumbersThatDrawingCannotComputeWithTheyAreRefused) {

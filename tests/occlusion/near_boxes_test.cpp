@@ -13,6 +13,7 @@
 #include "src/scene/pixel_view.h"
 #include "tests/occlusion/random_views.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -114,7 +115,7 @@ TEST(NearBoxes, WhereTheyAreHiddenNoRayReachesThem) {
   const RasterSettings sizes[] = {
       {.width = 24, .height = 18}, {.width = 9, .height = 40}, {.width = 65, .height = 3}};
   int hidden = 0, open = 0, unclear = 0;
-  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(400u); ++seed) {
     ViewRandom random(seed);
     View view = randomView(random);
     view.near = random.sized(1e-4, 0.1);
@@ -160,8 +161,8 @@ TEST(NearBoxes, WhereTheyAreHiddenNoRayReachesThem) {
       }
     }
   }
-  EXPECT_GT(hidden, 300);
-  EXPECT_GT(open, 300);
+  EXPECT_GT(hidden, test::rounds(300));
+  EXPECT_GT(open, test::rounds(300));
   // The greatest values of two planes within a pixel need not be in the same place of it.
   EXPECT_LT(unclear, (hidden + open) / 10);
 }

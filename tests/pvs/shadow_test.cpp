@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/pvs/convex_scenes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -115,7 +116,7 @@ void expectBlocked(const Shape& shape, const Vec3d& eye, const Box& box, Random&
 TEST(ConvexShadow, HidesNothingThatCanBeSeen) {
   for (const Family& family : kFamilies) {
     std::size_t hidden_count = 0, usable = 0;
-    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::rounds(120u); ++seed) {
       Single s(family, seed);
       if (s.all.size() != 1) {
         continue;  // thinner than rounding
@@ -134,8 +135,8 @@ TEST(ConvexShadow, HidesNothingThatCanBeSeen) {
         }
       }
     }
-    EXPECT_GT(usable, 60u) << family.name;
-    EXPECT_GT(hidden_count, 2000u) << family.name;
+    EXPECT_GT(usable, test::rounds(60u)) << family.name;
+    EXPECT_GT(hidden_count, test::rounds(2000u)) << family.name;
   }
 }
 

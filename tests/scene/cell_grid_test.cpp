@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/rounds.h"
+
 namespace sightline::scene {
 namespace {
 
@@ -62,7 +64,7 @@ bool reaches(const Vec3f* triangle, const std::array<Vec3d, 2>& sides) {
 
 TEST(CellGrid, MarksTheCellsThatTrianglesReachAndNoOthers) {
   std::size_t marked = 0, tried = 0;
-  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(150u); ++seed) {
     std::mt19937 random(seed);
     // Few different coordinates, so that triangles are parallel to axes and lie in planes of the grid; or
     // many.
@@ -94,8 +96,8 @@ TEST(CellGrid, MarksTheCellsThatTrianglesReachAndNoOthers) {
       }
     }
   }
-  EXPECT_GT(marked, 10000u);
-  EXPECT_GT(tried - marked, 10000u);
+  EXPECT_GT(marked, test::rounds(10000u));
+  EXPECT_GT(tried - marked, test::rounds(10000u));
 }
 
 TEST(CellGrid, WhatTouchesAPlaneIsOnItsOwnSideAlone) {

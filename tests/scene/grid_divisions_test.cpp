@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/rounds.h"
+
 namespace sightline::scene {
 namespace {
 
@@ -156,7 +158,7 @@ struct MarkedCells {
 TEST(GridDivisions, TheFirstDivisionSavesAsMuchAsAnyCanInGridsOfAnyNumberOfSlabs) {
   constexpr float kFarAway = 0x1p20f, kStep = 0x1p-3f;
   std::array<std::size_t, kMaxSlabs + 1> counts{};
-  for (std::uint32_t seed = 0; seed < 600; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(600u); ++seed) {
     std::mt19937 random(seed);
     const std::uint32_t clumps = 2 + seed % 6, triangles = seed % 2 == 0 ? 40 : 200;
     // Clumps of triangles that are up to a third of the side wide.
@@ -205,7 +207,7 @@ TEST(GridDivisions, TheFirstDivisionSavesAsMuchAsAnyCanInGridsOfAnyNumberOfSlabs
   for (std::uint32_t slabs = 9; slabs < kMaxSlabs; ++slabs) {
     between += slabs == 16 ? 0 : counts[slabs];
   }
-  EXPECT_GT(between, 300u);
+  EXPECT_GT(between, test::rounds(300u));
 }
 
 TEST(GridDivisions, MoreDivisionsAndBoxesNeverTakeMoreVolume) {

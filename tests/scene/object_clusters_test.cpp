@@ -10,6 +10,7 @@
 #include "scenes/landscapes.h"
 #include "scenes/procedural.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -26,7 +27,7 @@ std::vector<Triangle> trianglesOf(const SceneView& scene, const Object& object) 
 }
 
 TEST(ObjectClusters, HaveEachTriangleOfTheirObjectOnceInABoxThatHoldsIt) {
-  const Scene scene = makeTerrain({.triangles = 20000});
+  const Scene scene = makeTerrain({.triangles = test::rounds(20000u)});
   for (const std::uint32_t most : {1u, 100u, 1024u, 1u << 30}) {
     const ObjectClusters found = findObjectClusters(scene.view(), {.max_triangles = most});
     const SceneView clusters = found.view(scene.view());
@@ -72,7 +73,7 @@ TEST(ObjectClusters, AreSmallAgainstTheirObject) {
 }
 
 TEST(ObjectClusters, DoNotDependOnTheThreads) {
-  const Scene scene = makeTerrain({.triangles = 20000});
+  const Scene scene = makeTerrain({.triangles = test::rounds(20000u)});
   const ObjectClusters serial = findObjectClusters(scene.view(), {.max_triangles = 64});
   for (const ParallelFor& parallel_for : {backwardsBy(1), onThreads(4)}) {
     const ObjectClusters other = findObjectClusters(scene.view(), {.max_triangles = 64}, parallel_for);

@@ -6,6 +6,7 @@
 #include "scenes/landscapes.h"
 #include "scenes/procedural.h"
 #include "tests/scenes/scene_checks.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -30,15 +31,16 @@ TEST(Cave, TheDefaultOneHasManyThingsInManyPieces) {
 }
 
 TEST(Cave, TheRockHasAboutAsManyTrianglesAsAskedFor) {
-  for (const std::uint32_t triangles : {10000u, 30000u, 300000u}) {
+  for (const std::uint32_t triangles : {10000u, 30000u, test::rounds(300000u)}) {
     const SheetCounts rock = countSheet(makeCave({.triangles = triangles}), "rock ");
     EXPECT_NEAR(static_cast<double>(rock.triangles), triangles, 0.2 * triangles);
   }
 }
 
 TEST(Cave, TheRockIsOneClosedSurface) {
-  for (const CaveOptions& options : {CaveOptions{}, CaveOptions{.halls = 9, .triangles = 30000, .seed = 2},
-                                     CaveOptions{.halls = 4, .triangles = 400000, .seed = 3}}) {
+  for (const CaveOptions& options :
+       {CaveOptions{}, CaveOptions{.halls = 9, .triangles = 30000, .seed = 2},
+        CaveOptions{.halls = 4, .triangles = test::rounds(400000u), .seed = 3}}) {
     const SheetCounts rock = countSheet(makeCave(options), "rock ");
     EXPECT_EQ(rock.open_edges, 0u) << "seed " << options.seed;
     EXPECT_EQ(rock.crowded_edges, 0u) << "seed " << options.seed;
@@ -71,7 +73,7 @@ TEST(Cave, EverythingButTheRockIsASolidWithItsFrontsOutside) {
 }
 
 TEST(Cave, TheWalkTouchesNothing) {
-  for (const std::uint32_t triangles : {20000u, 100000u}) {
+  for (const std::uint32_t triangles : {20000u, test::rounds(100000u)}) {
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
       const Scene scene = makeCave({.triangles = triangles, .seed = seed});
       EXPECT_EQ(

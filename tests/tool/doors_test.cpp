@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sightline/pvs/bake/write_sight.h"
+#include "tests/support/rounds.h"
 #include "tests/tool/formats_page.h"
 #include "tests/tool/sight_contents.h"
 
@@ -61,13 +62,14 @@ TEST_F(DoorCommands, LeaveOutNothingThatIsVisibleWhicheverAreClosed) {
   for (const std::string& closed : {std::string(), firstDoor(), std::string("all")}) {
     const std::vector<std::string> doors =
         closed.empty() ? std::vector<std::string>() : std::vector<std::string>{"--closed", closed};
-    const Outcome regions = run("verify", joined({"--proof", "--pairs", "40", "--json", "-"}, doors));
+    const Outcome regions =
+        run("verify", joined({"--proof", "--pairs", std::to_string(test::rounds(40)), "--json", "-"}, doors));
     EXPECT_EQ(regions.code, 0) << closed << regions.err;
     const Outcome views =
-        run("verify",
-            joined({"--path", "cells", "--frames", "0:2000:67", "--width", "64", "--height", "64", "--method",
-                    "visibility-octree,depth-pyramid", "--visible-sets", "on", "--json", "-"},
-                   doors));
+        run("verify", joined({"--path", "cells", "--frames", test::kSanitized ? "0:2000:268" : "0:2000:67",
+                              "--width", "64", "--height", "64", "--method",
+                              "visibility-octree,depth-pyramid", "--visible-sets", "on", "--json", "-"},
+                             doors));
     EXPECT_EQ(views.code, 0) << closed << views.err << views.out.substr(0, 2000);
   }
 }

@@ -26,7 +26,7 @@ std::uintmax_t sizeOf(const std::string& file) {
 
 class KilledBake : public ::testing::Test {
  protected:
-  std::vector<std::string> arguments(const std::string& output, const std::string& threads) const {
+  static std::vector<std::string> arguments(const std::string& output, const std::string& threads) {
     return {"bake",
             "demo:ship?decks=3&rooms=4&machinery=0",
             "-o",
@@ -40,8 +40,10 @@ class KilledBake : public ::testing::Test {
             "--resume"};
   }
 
-  void SetUp() override {
-    const std::string file = folder_.file("reference.sight");
+  // The bake that nobody kills is made once for all tests.
+  static void SetUpTestSuite() {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("reference.sight");
     Started bake(toolWords(0, joined(arguments(file, "1"), {"--json", "-"})));
     while (bake.running()) {
       max_ = std::max(max_, sizeOf(file + ".parts"));
@@ -79,9 +81,9 @@ class KilledBake : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::mt19937 random_{kSeed};
-  std::string reference_;
-  std::uint64_t reference_parts_ = 0;
-  std::uintmax_t max_ = 0;  // bytes of a checkpoint, about
+  inline static std::string reference_;
+  inline static std::uint64_t reference_parts_ = 0;
+  inline static std::uintmax_t max_ = 0;  // bytes of a checkpoint, about
 };
 
 TEST_F(KilledBake, GoesOnToTheSameBytesAfterEachKillOfItsOnlyProcess) {
