@@ -152,7 +152,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
                   !leavesOut(memory_->part_rests[image.part]);
   if (!together && !pays(pixels, kFewestEdges)) {
-    return;  // nor does any of its patches
+    return;  // none of its patches pays either
   }
   listPatches(part, together);
   // What adjoins the part is drawn for the seams alone, and is not counted.

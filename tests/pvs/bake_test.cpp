@@ -466,6 +466,19 @@ TEST(Bake, PartsOfMoreWorkAreFewerCells) {
   EXPECT_LT(2 * most_fused, most_convex);
 }
 
+// Bakes each part by a worker of its own, the last ones of each level first.
+BakedParts partsBackwards(const Bake& bake) {
+  BakedParts parts;
+  for (std::vector<PartTask> open{bake.firstPart()}; !open.empty();) {
+    const PartTask part = open.front();
+    open.erase(open.begin());
+    const BakedPart& bytes = parts.emplace(part.id, Bake::Worker(bake).bake(part)).first->second;
+    const std::vector<PartTask> below = bake.partsBelow(bytes);
+    open.insert(open.end(), below.rbegin(), below.rend());
+  }
+  return parts;
+}
+
 TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
   const OccluderSet occluders = allOccluders(scene);
@@ -480,14 +493,7 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   Bake::Worker one(*bake), third(*forgetful);
   const BakedParts forwards = partsOf(*bake, [&](const PartTask& part) { return one.bake(part); });
   const BakedParts poor = partsOf(*forgetful, [&](const PartTask& part) { return third.bake(part); });
-  BakedParts backwards;
-  for (std::vector<PartTask> open{bake->firstPart()}; !open.empty();) {
-    const PartTask part = open.front();
-    open.erase(open.begin());
-    const BakedPart& bytes = backwards.emplace(part.id, Bake::Worker(*bake).bake(part)).first->second;
-    const std::vector<PartTask> below = bake->partsBelow(bytes);
-    open.insert(open.end(), below.rbegin(), below.rend());
-  }
+  const BakedParts backwards = partsBackwards(*bake);
   ASSERT_GT(forwards.size(), 1u);
   EXPECT_GT(third.stats().forgotten, one.stats().forgotten);
   EXPECT_GT(third.stats().shadows, one.stats().shadows);
@@ -497,6 +503,21 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   EXPECT_TRUE(same(*a, *b));
   EXPECT_TRUE(same(*a, *c));
   EXPECT_TRUE(same(*a, baked(scene, settings)));
+}
+
+// Without samples, a cell hands lists of occluders to the cells within it, if one worker bakes them all.
+TEST(Bake, IsTheSameWhoeverBakesThePartsWithoutSamples) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
+  const OccluderSet occluders = allOccluders(scene);
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, {.max_depth = 4, .sample_bytes = 0});
+  ASSERT_TRUE(bake);
+  Bake::Worker one(*bake);
+  const BakedParts forwards = partsOf(*bake, [&](const PartTask& part) { return one.bake(part); });
+  ASSERT_GT(forwards.size(), 1u);
+  const Result<BakedVisibility> a = bake->assemble(forwards), b = bake->assemble(partsBackwards(*bake));
+  ASSERT_TRUE(a && b);
+  EXPECT_TRUE(same(*a, *b));
+  EXPECT_TRUE(same(*a, baked(scene, {.max_depth = 4})));
 }
 
 TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {

@@ -156,7 +156,9 @@ void CellBaker::closeDoors(const OctreeCell& cell, double search_distance, CellS
   closed_doors_.hide(scene_.regionOf(cell), searchBox(cell, search_distance), sets);
 }
 
-// What is seen from a side is seen from the whole cell, so that little is left to be asked from there.
+// What is seen from a side is seen from the whole cell, so that little is left to be asked from there. That
+// holds while the same is known of both. When occluders are looked for farther away, more may be known of a
+// side, which surfaces hide more from, and then occluders of what it does not see do not count for it.
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   const auto object_count = static_cast<std::uint32_t>(scene_.boxes.objects.size());
   seen_from_side_.reset(object_count);
@@ -170,14 +172,23 @@ void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
     side.swap(scratch_);
     removeHiddenFrom(corners, part, side);
   };
-  const bool front_first = sides.front.size() >= sides.back.size();
-  const auto removeFromFront = [&] { removeFrom(sides.front, WitnessPart::kFront, sets.front); };
-  const auto removeFromBack = [&] { removeFrom(sides.back, WitnessPart::kBack, sets.back); };
-  front_first ? removeFromFront() : removeFromBack();
-  seen_from_side_.add(front_first ? sets.front : sets.back);
+  const bool side_first = !choice_.known;
+  const bool front_is_larger = sides.front.size() >= sides.back.size();
+  if (side_first && front_is_larger) {
+    removeFrom(sides.front, WitnessPart::kFront, sets.front);
+    seen_from_side_.add(sets.front);
+  } else if (side_first) {
+    removeFrom(sides.back, WitnessPart::kBack, sets.back);
+    seen_from_side_.add(sets.back);
+  }
   removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
   seen_from_side_.reset(object_count);
-  front_first ? removeFromBack() : removeFromFront();
+  if (!side_first || !front_is_larger) {
+    removeFrom(sides.front, WitnessPart::kFront, sets.front);
+  }
+  if (!side_first || front_is_larger) {
+    removeFrom(sides.back, WitnessPart::kBack, sets.back);
+  }
 }
 
 void CellBaker::removeFused(const CellBox& box, const RegionEffort& effort, CellSets& sets) {

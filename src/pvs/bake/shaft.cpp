@@ -35,9 +35,9 @@ std::uint32_t slantedBeyond(const std::array<Shaft::Sides, 3>& slanted, const Ve
       const auto place = hn::Add(hn::Mul(hn::Load(kLanes, across.normal_i.data() + first), i),
                                  hn::Mul(hn::Load(kLanes, across.normal_j.data() + first), j));
       const auto is_beyond = hn::Gt(place, hn::Load(kLanes, across.level.data() + first));
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(kLanes, is_beyond, &bits);
-      beyond |= std::uint32_t{bits} << (bit + first);
+      std::uint8_t bits[8] = {};  // StoreMaskBits() may write all of these
+      hn::StoreMaskBits(kLanes, is_beyond, bits);
+      beyond |= std::uint32_t{bits[0]} << (bit + first);
     }
   };
   add(slanted[0], y, z, 0);
