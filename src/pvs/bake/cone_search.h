@@ -51,7 +51,7 @@ struct BoxLanes {
 // the same on every instruction set.
 void placesMet(const BoxLanes& boxes, std::span<const Cone> cones, std::vector<std::uint32_t>& places);
 
-// The same, of the boxes first ... first + count - 1.
+// Looks at the boxes first ... first + count - 1 alone.
 void placesMet(const BoxLanes& boxes, std::size_t first, std::size_t count, std::span<const Cone> cones,
                std::vector<std::uint32_t>& places);
 

@@ -50,8 +50,8 @@ class ConvexSearch {
   // hide. They come in no particular order, and are valid until the next call.
   std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
                                     const ObjectMask& known);
-  // The same without what is known to be seen, by lists of a cell that holds the region. All that is hidden
-  // from the cell must be known.
+  // Leaves out what is known to be seen, too, and asks by lists of a cell that holds the region. What is
+  // hidden from all of that cell must be known.
   std::span<const Found> hiddenFrom(std::span<const Vec3d> corners, const OccluderChoice& choice,
                                     const ObjectMask& known, const ObjectMask& seen,
                                     const CellCandidates& lists);

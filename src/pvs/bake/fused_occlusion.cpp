@@ -182,8 +182,8 @@ void FusedOcclusion::findCrossingsTo(std::uint32_t end) {
 void FusedOcclusion::findFirstCrossings() {
   for (std::uint32_t i = kept_count_; i > 0 && i + kMostKeptLines > kept_count_; --i) {
     const KeptLine& kept = kept_lines_[(i - 1) % kMostKeptLines];
-    if (isIn(region_, kept.from) && isIn(target_, kept.to)) {
-      lines_[0] = {kept.from, kept.to};
+    if (isIn(region_, kept.line.from) && isIn(target_, kept.line.to)) {
+      lines_[0] = kept.line;
       crossings_ = kept.crossings;
       return;
     }
@@ -195,8 +195,7 @@ void FusedOcclusion::findFirstCrossings() {
                   : Line{pointIn(region_, mirrored(kStart)), pointIn(target_, mirrored(kEnds[0]))};
   findCrossings(lines_[0].from, lines_[0].to);
   KeptLine& kept = kept_lines_[kept_count_++ % kMostKeptLines];
-  kept.from = lines_[0].from;
-  kept.to = lines_[0].to;
+  kept.line = lines_[0];
   kept.crossings = crossings_;
 }
 

@@ -140,19 +140,19 @@ class FusedOcclusion {
   Shaft shaft_;
   Proof proof_;
   std::vector<Crossing> crossings_;
-  // A line of sight that a question began with, and its crossings with all but the target's own object.
-  struct KeptLine {
-    Vec3d from, to;
-    std::vector<Crossing> crossings;
-  };
-  static constexpr std::uint32_t kMostKeptLines = 32;
-  // Of this search: line i is at i % kMostKeptLines, so that the last ones are there.
-  std::array<KeptLine, kMostKeptLines> kept_lines_;
-  std::uint32_t kept_count_ = 0;
-  std::uint32_t kept_without_ = kNoObject;  // FusedTarget::object of their questions
   struct Line {
     Vec3d from, to;
   };
+  // A line of sight that a question began with, and its crossings with all but the target's own object.
+  struct KeptLine {
+    Line line;
+    std::vector<Crossing> crossings;
+  };
+  static constexpr std::uint32_t kMostKeptLines = 32;
+  // These are the last lines of this search: line i is at i % kMostKeptLines.
+  std::array<KeptLine, kMostKeptLines> kept_lines_;
+  std::uint32_t kept_count_ = 0;
+  std::uint32_t kept_without_ = kNoObject;  // FusedTarget::object of their questions
   // By end: the line of sight that is followed, and its crossings with all that are not left out when it is
   // first followed.
   std::array<Line, kEndCount> lines_;

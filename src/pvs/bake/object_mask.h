@@ -17,7 +17,7 @@ class ObjectMask {
   // Resizes to `count` objects, all set except those of the runs.
   void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
   void add(std::span<const ObjectRun> runs);
-  // others: of as many objects.
+  // others: must have as many objects.
   void remove(const ObjectMask& others);
   bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
   bool containsAll(const ObjectRun& run) const;
