@@ -26,8 +26,8 @@
 #include <vector>
 
 #include "bench/benchmark_scene.h"
-#include "src/occluders/conform.h"
-#include "src/occluders/surface_mesh.h"
+#include "src/occluders/conform/conform.h"
+#include "src/occluders/surfaces/surface_mesh.h"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include "fuzz/readers/forged_bytes.h"
 #include "fuzz/readers/fuzz_input.h"
 #include "src/base/byte_stream.h"
-#include "src/pvs/bake/answers.h"
-#include "src/pvs/bake/earlier_bake.h"
-#include "src/pvs/bake/packed_bytes.h"
+#include "src/pvs/bake/file/packed_bytes.h"
+#include "src/pvs/bake/update/answers.h"
+#include "src/pvs/bake/update/earlier_bake.h"
 
 using namespace sightline;
 using namespace sightline::fuzz;

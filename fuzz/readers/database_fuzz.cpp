@@ -4,8 +4,8 @@
 
 #include "fuzz/readers/fuzz_input.h"
 #include "src/comparison/occluders/grid_points.h"
-#include "src/occluders/database_cells.h"
-#include "src/occluders/direction_lists.h"
+#include "src/occluders/database/database_cells.h"
+#include "src/occluders/database/direction_lists.h"
 
 using namespace sightline;
 using namespace sightline::fuzz;

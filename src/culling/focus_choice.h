@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sightline/occlusion/depth_pyramid.h"
-#include "src/occlusion/pixel_range.h"
+#include "src/occlusion/boxes/pixel_range.h"
 
 namespace sightline::culling {
 

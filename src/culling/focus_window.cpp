@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/occlusion/box_depth_test.h"
+#include "src/occlusion/boxes/box_depth_test.h"
 
 namespace sightline::culling {
 

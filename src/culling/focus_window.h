@@ -9,9 +9,9 @@
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "sightline/scene/camera.h"
-#include "src/occlusion/box_outline.h"
-#include "src/occlusion/depth_levels.h"
-#include "src/occlusion/pixel_range.h"
+#include "src/occlusion/boxes/box_outline.h"
+#include "src/occlusion/boxes/depth_levels.h"
+#include "src/occlusion/boxes/pixel_range.h"
 
 namespace sightline::culling {
 

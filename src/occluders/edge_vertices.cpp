@@ -27,7 +27,7 @@
 #include "src/base/scratch_array.h"
 #include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
-#include "src/occluders/conform_pairs.h"
+#include "src/occluders/conform/conform_pairs.h"
 #include "src/occluders/near_line.h"
 
 namespace sightline::occluders {

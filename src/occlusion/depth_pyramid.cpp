@@ -7,10 +7,10 @@
 
 #include <algorithm>
 
-#include "src/occlusion/box_depth_test.h"
-#include "src/occlusion/box_outline.h"
-#include "src/occlusion/depth_levels.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/box_depth_test.h"
+#include "src/occlusion/boxes/box_outline.h"
+#include "src/occlusion/boxes/depth_levels.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 
 namespace sightline {
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "src/occlusion/tree_build.h"
-#include "src/occlusion/tree_classify.h"
+#include "src/occlusion/tree/tree_build.h"
+#include "src/occlusion/tree/tree_classify.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {

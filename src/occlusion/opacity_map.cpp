@@ -5,9 +5,9 @@
 
 #include "sightline/occlusion/opacity_map.h"
 
-#include "src/occlusion/pixel_boxes.h"
-#include "src/occlusion/sparse_depth.h"
-#include "src/occlusion/summed_area.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
+#include "src/occlusion/boxes/sparse_depth.h"
+#include "src/occlusion/boxes/summed_area.h"
 
 namespace sightline {
 

@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/occlusion/polygon_builder.h"
-#include "src/occlusion/raster_rows.h"
-#include "src/occlusion/surface_aims.h"
-#include "src/occlusion/surface_raster.h"
+#include "src/occlusion/polygons/polygon_builder.h"
+#include "src/occlusion/polygons/raster_rows.h"
+#include "src/occlusion/surfaces/surface_aims.h"
+#include "src/occlusion/surfaces/surface_raster.h"
 
 namespace sightline {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "src/occlusion/active_occluders.h"
-#include "src/occlusion/list_classifier.h"
+#include "src/occlusion/planes/active_occluders.h"
+#include "src/occlusion/planes/list_classifier.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sightline/math/frustum.h"
-#include "src/occlusion/surface_aims.h"
+#include "src/occlusion/surfaces/surface_aims.h"
 #include "src/world/world_eye.h"
 
 namespace sightline::world {

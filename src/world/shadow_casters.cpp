@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sightline/math/frustum.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/scene/usable_view.h"
 #include "src/world/culler_impl.h"
 

@@ -12,7 +12,7 @@
 #include "src/culling/hiding_aims.h"
 #include "src/culling/last_view.h"
 #include "src/culling/usual_work.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/world/eye_sets.h"
 #include "src/world/hidden_boxes.h"
 #include "src/world/id_bits.h"

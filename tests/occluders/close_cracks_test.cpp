@@ -1,6 +1,6 @@
 // Cracks that are closed, and those that are not.
 
-#include "src/occluders/close_cracks.h"
+#include "src/occluders/conform/close_cracks.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/occluders/conform.h"
+#include "src/occluders/conform/conform.h"
 #include "tests/occluders/triangle_soup.h"
 
 namespace sightline::test {

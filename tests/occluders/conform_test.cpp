@@ -1,7 +1,7 @@
 // Conformed triangles against brute force in rational numbers, and what they are for: touching surfaces whose
 // edges cancel.
 
-#include "src/occluders/conform.h"
+#include "src/occluders/conform/conform.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "src/occluders/bend_triangles.h"
+#include "src/occluders/conform/bend_triangles.h"
 #include "src/occluders/edge_vertices.h"
 #include "tests/occluders/conform_judge.h"
 #include "tests/support/rounds.h"

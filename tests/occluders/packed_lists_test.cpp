@@ -1,4 +1,4 @@
-#include "src/occluders/packed_lists.h"
+#include "src/occluders/database/packed_lists.h"
 
 #include <gtest/gtest.h>
 

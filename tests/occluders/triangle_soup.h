@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/occluders/conform.h"
+#include "src/occluders/conform/conform.h"
 
 namespace sightline::test {
 

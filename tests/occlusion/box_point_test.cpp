@@ -1,4 +1,4 @@
-#include "src/occlusion/box_point.h"
+#include "src/occlusion/boxes/box_point.h"
 
 #include <gtest/gtest.h>
 

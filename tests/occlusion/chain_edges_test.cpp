@@ -1,6 +1,6 @@
 // Chains of surfaces in a depth buffer: their edges do not depend on what is projected with them.
 
-#include "src/occlusion/chain_edges.h"
+#include "src/occlusion/surfaces/chain_edges.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "src/occlusion/depth_levels.h"
+#include "src/occlusion/boxes/depth_levels.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "src/occlusion/box_depth_test.h"
+#include "src/occlusion/boxes/box_depth_test.h"
 #include "tests/occlusion/random_views.h"
 #include "tests/support/rounds.h"
 

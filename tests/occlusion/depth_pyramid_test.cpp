@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/scene/pixel_view.h"
 #include "tests/occlusion/small_scenes.h"
 

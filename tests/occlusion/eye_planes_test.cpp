@@ -1,4 +1,4 @@
-#include "src/occlusion/eye_planes.h"
+#include "src/occlusion/planes/eye_planes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sightline/occlusion/depth_pyramid.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/scene/pixel_view.h"
 #include "tests/occlusion/random_views.h"
 #include "tests/occlusion/small_scenes.h"

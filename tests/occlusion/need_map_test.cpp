@@ -1,4 +1,4 @@
-#include "src/occlusion/need_map.h"
+#include "src/occlusion/surfaces/need_map.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "src/occlusion/polygon_split.h"
+#include "src/occlusion/tree/polygon_split.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "src/occlusion/sparse_depth.h"
+#include "src/occlusion/boxes/sparse_depth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "src/occlusion/summed_area.h"
+#include "src/occlusion/boxes/summed_area.h"
 #include "tests/occlusion/synthetic_buffers.h"
 
 namespace sightline::occlusion {

@@ -1,4 +1,4 @@
-#include "src/occlusion/square_depths.h"
+#include "src/occlusion/surfaces/square_depths.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "src/occlusion/summed_area.h"
+#include "src/occlusion/boxes/summed_area.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Sets of surfaces that are drawn in turn, more of them than are remembered.
 
-#include "src/occlusion/surface_memory.h"
+#include "src/occlusion/surfaces/surface_memory.h"
 
 #include <gtest/gtest.h>
 

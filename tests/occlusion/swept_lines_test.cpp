@@ -1,6 +1,6 @@
 // How far edges are swept as the eye moves, against points of them as viewers of a region see them.
 
-#include "src/occlusion/swept_lines.h"
+#include "src/occlusion/surfaces/swept_lines.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/occlusion/winding_map.h"
+#include "src/occlusion/surfaces/winding_map.h"
 #include "tests/occlusion/random_views.h"
 
 namespace sightline::occlusion {

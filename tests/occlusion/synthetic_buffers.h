@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sightline/occlusion/rasteriser.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 
 namespace sightline::test {
 

@@ -1,6 +1,6 @@
 // Windings in a depth buffer as wide as they come: the same bits on every instruction set, and right ones.
 
-#include "src/occlusion/winding_map.h"
+#include "src/occlusion/surfaces/winding_map.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

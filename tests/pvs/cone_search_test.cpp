@@ -1,6 +1,6 @@
 // A cone must find every box that a point of it lies in, and few of those that are far from it.
 
-#include "src/pvs/bake/cone_search.h"
+#include "src/pvs/bake/convex/cone_search.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "sightline/hierarchy/box_tree.h"
-#include "src/pvs/bake/convex_occluder.h"
-#include "src/pvs/bake/shadow.h"
-#include "src/pvs/bake/shadow_tree.h"
+#include "src/pvs/bake/convex/convex_occluder.h"
+#include "src/pvs/bake/convex/shadow.h"
+#include "src/pvs/bake/convex/shadow_tree.h"
 #include "tests/occluders/flat_mesh.h"
 #include "tests/support/solids.h"
 #include "tests/support/wide_ray.h"

@@ -1,11 +1,11 @@
 // What is found by lines of sight must be what asking every occluder about every object finds.
 
-#include "src/pvs/bake/convex_search.h"
+#include "src/pvs/bake/convex/convex_search.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include "src/pvs/bake/shadow.h"
+#include "src/pvs/bake/convex/shadow.h"
 #include "tests/pvs/bake_scenes.h"
 #include "tests/pvs/convex_scenes.h"
 

@@ -1,6 +1,6 @@
 // What a bake keeps beside its result: packed bytes, runs, and answers, sound and forged.
 
-#include "src/pvs/bake/packed_bytes.h"
+#include "src/pvs/bake/file/packed_bytes.h"
 
 #include <gtest/gtest.h>
 #include <zstd.h>
@@ -8,8 +8,8 @@
 #include <random>
 
 #include "src/base/byte_stream.h"
-#include "src/pvs/bake/answers.h"
-#include "src/pvs/bake/run_code.h"
+#include "src/pvs/bake/file/run_code.h"
+#include "src/pvs/bake/update/answers.h"
 
 namespace sightline::pvs {
 namespace {

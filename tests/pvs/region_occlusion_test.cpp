@@ -1,4 +1,4 @@
-#include "src/pvs/bake/region_occlusion.h"
+#include "src/pvs/bake/surfaces/region_occlusion.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "src/pvs/bake/samples.h"
+#include "src/pvs/bake/convex/samples.h"
 
 #include <gtest/gtest.h>
 

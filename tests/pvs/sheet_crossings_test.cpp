@@ -1,6 +1,6 @@
 // Crossings of sheets by lines of sight against whole numbers, with many ties, on every instruction set.
 
-#include "src/pvs/bake/sheet_crossings.h"
+#include "src/pvs/bake/surfaces/sheet_crossings.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

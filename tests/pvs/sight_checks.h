@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sightline/pvs/query/sight_file.h"
-#include "src/pvs/bake/encode_sight.h"
+#include "src/pvs/bake/file/encode_sight.h"
 #include "tests/support/made_visibility.h"
 
 namespace sightline::sight_test {

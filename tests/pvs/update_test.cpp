@@ -7,7 +7,7 @@
 #include <span>
 
 #include "scenes/procedural.h"
-#include "src/pvs/bake/encode_sight.h"
+#include "src/pvs/bake/file/encode_sight.h"
 #include "tests/pvs/edited_scene.h"
 #include "tests/support/rounds.h"
 

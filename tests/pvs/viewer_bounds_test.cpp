@@ -7,7 +7,7 @@
 #include "sightline/pvs/query/set_query.h"
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_tree.h"
-#include "src/pvs/bake/encode_sight.h"
+#include "src/pvs/bake/file/encode_sight.h"
 #include "tests/pvs/bake_scenes.h"
 
 namespace sightline {

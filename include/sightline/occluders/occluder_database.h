@@ -50,9 +50,10 @@ class OccluderDatabase final : public OccluderLists {
   // at any viewpoint in the cell, for any viewing direction whose nearest stored one is the list's (both
   // capped at 2 pi). So no occluder is lost that is worth more somewhere in the cell than the score of the
   // last entry. Occluders are left out that no viewpoint of the cell sees from a side that hides, or within
-  // half the view angle of such a direction; both are bounded (see src/occluders/database_lists.cpp). This
-  // holds for perspective views from viewpoints in the box of the tree, enlarged by 1/256 of its diagonal.
-  // Beyond it the lists of the outermost cells are found, which are a good guess.
+  // half the view angle of such a direction; both are bounded (see
+  // src/occluders/database/database_lists.cpp). This holds for perspective views from viewpoints in the box
+  // of the tree, enlarged by 1/256 of its diagonal. Beyond it the lists of the outermost cells are found,
+  // which are a good guess.
   //
   // The result does not depend on the threads. progress: one step a cell.
   // Source: Coorg, Teller 1997, section 5.

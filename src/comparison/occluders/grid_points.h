@@ -10,7 +10,7 @@
 #include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "src/base/byte_stream.h"
-#include "src/occluders/database_bytes.h"
+#include "src/occluders/database/database_bytes.h"
 
 namespace sightline::comparison {
 

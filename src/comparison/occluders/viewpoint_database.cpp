@@ -13,7 +13,7 @@
 
 #include "src/comparison/occluders/grid_points.h"
 #include "src/comparison/occluders/viewpoint_lists.h"
-#include "src/occluders/direction_lists.h"
+#include "src/occluders/database/direction_lists.h"
 #include "src/occluders/step_progress.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "src/occlusion/raster_rows.h"
+#include "src/occlusion/polygons/raster_rows.h"
 
 namespace sightline {
 

@@ -9,8 +9,8 @@
 
 #include "src/comparison/occlusion/relation.h"
 #include "src/comparison/occlusion/relation_store.h"
-#include "src/occlusion/active_occluders.h"
-#include "src/occlusion/list_classifier.h"
+#include "src/occlusion/planes/active_occluders.h"
+#include "src/occlusion/planes/list_classifier.h"
 
 namespace sightline {
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "sightline/comparison/kept_planes.h"
-#include "src/occlusion/active_occluders.h"
+#include "src/occlusion/planes/active_occluders.h"
 
 namespace sightline::comparison {
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "src/occlusion/tree_build.h"
+#include "src/occlusion/tree/tree_build.h"
 
 namespace sightline {
 

@@ -16,7 +16,7 @@
 #include "src/culling/focus_choice.h"
 #include "src/culling/focus_window.h"
 #include "src/culling/methods/surface_drawing.h"
-#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/boxes/pixel_boxes.h"
 
 namespace sightline::culling {
 

@@ -9,12 +9,12 @@
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/pvs/bake/bake.h"
 #include "src/pvs/bake/cell_region.h"
-#include "src/pvs/bake/cone_search.h"
-#include "src/pvs/bake/convex_occluder.h"
-#include "src/pvs/bake/door_groups.h"
-#include "src/pvs/bake/panels.h"
+#include "src/pvs/bake/convex/cone_search.h"
+#include "src/pvs/bake/convex/convex_occluder.h"
+#include "src/pvs/bake/convex/shadow_tree.h"
+#include "src/pvs/bake/doors/door_groups.h"
 #include "src/pvs/bake/runs.h"
-#include "src/pvs/bake/shadow_tree.h"
+#include "src/pvs/bake/surfaces/panels.h"
 
 namespace sightline::pvs {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sightline/pvs/format/visibility_octree.h"
-#include "src/pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/convex/convex_occluder.h"
 
 namespace sightline::pvs {
 

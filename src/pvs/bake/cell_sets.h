@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "src/pvs/bake/bake_scene.h"
-#include "src/pvs/bake/cell_candidates.h"
-#include "src/pvs/bake/cell_recall.h"
-#include "src/pvs/bake/closed_doors.h"
-#include "src/pvs/bake/convex_search.h"
-#include "src/pvs/bake/node_occlusion.h"
+#include "src/pvs/bake/convex/cell_candidates.h"
+#include "src/pvs/bake/convex/convex_search.h"
+#include "src/pvs/bake/convex/samples.h"
+#include "src/pvs/bake/doors/closed_doors.h"
 #include "src/pvs/bake/object_mask.h"
-#include "src/pvs/bake/samples.h"
 #include "src/pvs/bake/seen_sets.h"
+#include "src/pvs/bake/surfaces/node_occlusion.h"
+#include "src/pvs/bake/update/cell_recall.h"
 
 namespace sightline::pvs {
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "src/pvs/bake/run_code.h"
+#include "src/pvs/bake/file/run_code.h"
 
 namespace sightline::pvs {
 namespace {
