@@ -4,6 +4,7 @@
 #include "sightline/base/large_vector.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "src/base/memory_reuse.h"
 
