@@ -1,0 +1,106 @@
+#include "src/pvs/bake/set_writer.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+
+#include "src/pvs/format/checksum.h"
+#include "src/pvs/format/set_code.h"
+
+namespace sightline::pvs {
+namespace {
+
+// All levels decompress equally fast. Sets are compressed hardest because they make up most of a file.
+constexpr int kSetLevel = 19;
+
+}  // namespace
+
+ChunkWriter::ChunkWriter(Payload& payload, EncodedChunks& encoded)
+    : payload_(payload),
+      encoded_(encoded),
+      offset_(encoded.chunks.empty() ? 0 : encoded.chunks.back().offset + encoded.chunks.back().bytes),
+      context_(ZSTD_createCCtx()) {}
+
+ChunkWriter::~ChunkWriter() {
+  ZSTD_freeCCtx(context_);
+}
+
+// A zstd frame compressed in one call stores its size.
+void ChunkWriter::append(std::span<const std::byte> raw, int level) {
+  frame_.resize(ZSTD_compressBound(raw.size()));
+  const std::size_t written =
+      ZSTD_compressCCtx(context_, frame_.data(), frame_.size(), raw.data(), raw.size(), level);
+  // With room for the bound, compression fails only if memory runs out.
+  std::span<const std::byte> frame(frame_.data(), ZSTD_isError(written) != 0 ? 0 : written);
+  if (!payload_.append(frame)) {
+    frame = {};
+  }
+  encoded_.chunks.push_back({checksumOf(frame), offset_, static_cast<std::uint32_t>(frame.size()),
+                             static_cast<std::uint32_t>(raw.size())});
+  offset_ += frame.size();
+}
+
+SetWriter::SetWriter(std::span<const BoxNode> tree, Payload& payload, EncodedChunks& encoded)
+    : tree_(tree),
+      payload_(payload),
+      encoded_(encoded),
+      writer_(payload, encoded),
+      decompressor_(ZSTD_createDCtx()) {}
+
+SetWriter::~SetWriter() {
+  ZSTD_freeDCtx(decompressor_);
+}
+
+// Equal sets have equal bytes.
+bool SetWriter::same(std::uint32_t set, std::span<const std::uint32_t> nodes) {
+  set_bytes_.clear();
+  appendSet(set_bytes_, nodes, tree_);
+  const auto [chunk, offset] = encoded_.sets[set];
+  const bool written = chunk < encoded_.chunks.size();
+  const std::span<const std::byte> raw = written ? chunkAgain(chunk) : std::span<const std::byte>(raw_);
+  const bool last = set + 1 == count() || encoded_.sets[set + 1].chunk != chunk;
+  const std::size_t end = last ? raw.size() : encoded_.sets[set + 1].offset;
+  return end >= offset && end <= raw.size() &&
+         std::ranges::equal(raw.subspan(offset, end - offset), set_bytes_);
+}
+
+void SetWriter::add(std::span<const std::uint32_t> nodes) {
+  sound_ = sound_ && soundSet(nodes, tree_);
+  set_bytes_.clear();
+  appendSet(set_bytes_, nodes, tree_);
+  if (raw_.size() + set_bytes_.size() > kSetChunkBytes) {
+    finishChunk();
+  }
+  encoded_.sets.push_back(
+      {static_cast<std::uint32_t>(encoded_.chunks.size()), static_cast<std::uint32_t>(raw_.size())});
+  raw_.insert(raw_.end(), set_bytes_.begin(), set_bytes_.end());
+}
+
+void SetWriter::finish() {
+  finishChunk();
+  encoded_.set_chunks = static_cast<std::uint32_t>(encoded_.chunks.size());
+}
+
+void SetWriter::finishChunk() {
+  if (!raw_.empty()) {
+    writer_.append(raw_, kSetLevel);
+    raw_.clear();
+  }
+}
+
+std::span<const std::byte> SetWriter::chunkAgain(std::uint32_t chunk) {
+  if (chunk != again_chunk_) {
+    again_chunk_ = chunk;
+    const Chunk& wanted = encoded_.chunks[chunk];
+    frame_.resize(wanted.bytes);
+    again_.resize(wanted.raw_bytes);
+    if (!payload_.read(wanted.offset, frame_) ||
+        ZSTD_decompressDCtx(decompressor_, again_.data(), again_.size(), frame_.data(), frame_.size()) !=
+            again_.size()) {
+      again_.clear();
+    }
+  }
+  return again_;
+}
+
+}  // namespace sightline::pvs
