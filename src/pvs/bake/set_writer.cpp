@@ -10,8 +10,18 @@
 namespace sightline::pvs {
 namespace {
 
-// All levels decompress equally fast. Sets are compressed hardest because they make up most of a file.
-constexpr int kSetLevel = 19;
+// Levels of zstd, which decompress about equally fast. Short chunks are compressed hardest. For long ones
+// that would take longer than to bake their sets, and gain a twentieth.
+constexpr int kShortLevel = 19, kLongLevel = 1;
+constexpr std::size_t kLongBytes = 8192;
+
+// About how many bytes a chunk has before compression whose first set has so many. Sets of cells side by side
+// repeat each other's bytes, so that together they take less. Each set that is looked up alone costs the
+// decompression of its whole chunk, so only few long ones share one.
+std::size_t chunkBytes(std::size_t first_set_bytes) {
+  constexpr std::size_t kLongSets = 4;
+  return std::clamp<std::size_t>(kLongSets * first_set_bytes, kSetChunkBytes, kMaxSetChunkBytes);
+}
 
 }  // namespace
 
@@ -68,8 +78,11 @@ void SetWriter::add(std::span<const std::uint32_t> nodes) {
   sound_ = sound_ && soundSet(nodes, tree_);
   set_bytes_.clear();
   appendSet(set_bytes_, nodes, tree_);
-  if (raw_.size() + set_bytes_.size() > kSetChunkBytes) {
+  if (raw_.size() + set_bytes_.size() > raw_limit_) {
     finishChunk();
+  }
+  if (raw_.empty()) {
+    raw_limit_ = chunkBytes(set_bytes_.size());
   }
   encoded_.sets.push_back(
       {static_cast<std::uint32_t>(encoded_.chunks.size()), static_cast<std::uint32_t>(raw_.size())});
@@ -83,7 +96,7 @@ void SetWriter::finish() {
 
 void SetWriter::finishChunk() {
   if (!raw_.empty()) {
-    writer_.append(raw_, kSetLevel);
+    writer_.append(raw_, raw_.size() > kLongBytes ? kLongLevel : kShortLevel);
     raw_.clear();
   }
 }

@@ -79,6 +79,7 @@ class SetWriter final : public SetStore {
   ChunkWriter writer_;
   bool sound_ = true;
   std::vector<std::byte> raw_;  // of the chunk that is not written yet
+  std::size_t raw_limit_ = 0;   // its bytes, unless it is a single set
   std::vector<std::byte> set_bytes_;
   ZSTD_DCtx_s* decompressor_;
   std::uint32_t again_chunk_ = kNone;  // the chunk in again_

@@ -21,7 +21,8 @@ inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint64_t kMaxStructureBytes = 0x7ffffffeu;  // a FlatBuffer is smaller than 2^31 - 1
 
 // Chunks of sets are about kSetChunkBytes long before compression, so that one is decompressed in a few
-// microseconds. None is longer than kMaxSetChunkBytes, except for a single set that is longer itself.
+// microseconds, or as long as a few sets where these are longer. None is longer than kMaxSetChunkBytes,
+// except for a single set that is longer itself.
 inline constexpr std::uint32_t kSetChunkBytes = 2048;
 inline constexpr std::uint32_t kMaxSetChunkBytes = 65536;
 inline constexpr std::uint32_t kDatabaseChunkBytes = 1u << 20;
