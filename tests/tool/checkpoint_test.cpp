@@ -37,12 +37,31 @@ std::vector<std::size_t> appendAll(const std::string& file, CheckpointUse use) {
   return sizes;
 }
 
-Result<KeptParts> resume(const std::string& file, std::uint64_t plan = kPlan) {
+// What a checkpoint has, with the bytes of its parts.
+struct Found : KeptParts {
+  BakedParts parts{};
+};
+
+Result<Found> foundIn(Checkpoint& checkpoint, std::uint64_t plan) {
+  Result<KeptParts> kept = checkpoint.begin(plan);
+  if (!kept) {
+    return kept.error();
+  }
+  Found found{*kept, {}};
+  for (const std::uint64_t part : kept->parts) {
+    const std::optional<BakedPart> bytes = checkpoint.read(part);
+    EXPECT_TRUE(bytes) << part;
+    found.parts.emplace(part, bytes.value_or(BakedPart{}));
+  }
+  return found;
+}
+
+Result<Found> resume(const std::string& file, std::uint64_t plan = kPlan) {
   Result<Checkpoint> checkpoint = Checkpoint::open(file, CheckpointUse::kResume);
   if (!checkpoint) {
     return checkpoint.error();
   }
-  return checkpoint->begin(plan);
+  return foundIn(*checkpoint, plan);
 }
 
 // All of kFinished but the n-th ones given.
@@ -63,7 +82,7 @@ void expectMended(const std::string& file, const std::vector<std::size_t>& lost)
       ASSERT_TRUE(checkpoint->append(kFinished[n].first, kFinished[n].second));
     }
   }
-  const Result<KeptParts> kept = resume(file);
+  const Result<Found> kept = resume(file);
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->parts, allBut({}));
   EXPECT_EQ(lossText(file, *kept), "");
@@ -73,7 +92,7 @@ TEST(Checkpoint, GivesBackWhatWasAppended) {
   const TemporaryFolder folder;
   const std::string file = folder.file("F.parts");
   appendAll(file, CheckpointUse::kNew);
-  const Result<KeptParts> kept = resume(file);
+  const Result<Found> kept = resume(file);
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->parts, allBut({}));
   EXPECT_EQ(lossText(file, *kept), "");
@@ -87,7 +106,7 @@ TEST(Checkpoint, CutAnywhereItHasTheWholePartsBeforeTheCutAndGoesOn) {
   for (std::size_t length = 0; length <= whole.size(); ++length) {
     SCOPED_TRACE(length);
     folder.write("F.parts", whole.substr(0, length));
-    const Result<KeptParts> kept = resume(file);
+    const Result<Found> kept = resume(file);
     ASSERT_TRUE(kept) << kept.error().message;
     std::vector<std::size_t> lost;
     for (std::size_t n = 0; n < kFinished.size(); ++n) {
@@ -123,7 +142,7 @@ TEST(Checkpoint, AlteredAnywhereItGivesTheOtherPartsAndSaysThatOneIsLost) {
       std::string altered = whole;
       altered[at] = static_cast<char>(altered[at] ^ (1 << bit));
       folder.write("F.parts", altered);
-      const Result<KeptParts> kept = resume(file);
+      const Result<Found> kept = resume(file);
       if (at < sizes[0]) {
         ASSERT_FALSE(kept);
         EXPECT_NE(kept.error().message.find("F.parts"), std::string::npos);
@@ -153,7 +172,7 @@ TEST(Checkpoint, SaysHowManyPartsAreLost) {
   altered[sizes[0] + 20] ^= 1;
   altered[sizes[1] + 20] ^= 1;
   folder.write("F.parts", altered);
-  const Result<KeptParts> two = resume(file);
+  const Result<Found> two = resume(file);
   ASSERT_TRUE(two);
   EXPECT_EQ(two->parts, allBut({0, 1}));
   EXPECT_EQ(lossText(file, *two), file + ": is damaged: 2 of 3 parts could not be read and are baked again");
@@ -161,13 +180,13 @@ TEST(Checkpoint, SaysHowManyPartsAreLost) {
   altered = whole.substr(0, whole.size() - 3);
   altered[sizes[0] + 20] ^= 1;
   folder.write("F.parts", altered);
-  const Result<KeptParts> both = resume(file);
+  const Result<Found> both = resume(file);
   ASSERT_TRUE(both);
   EXPECT_EQ(both->parts, allBut({0, 2}));
   EXPECT_EQ(lossText(file, *both), file + ": is damaged: 2 of 3 parts could not be read and are baked again");
   // A crash of the machine may leave zeros in place of what was written.
   folder.write("F.parts", whole + std::string(100, '\0'));
-  const Result<KeptParts> zeros = resume(file);
+  const Result<Found> zeros = resume(file);
   ASSERT_TRUE(zeros);
   EXPECT_EQ(zeros->parts, allBut({}));
   EXPECT_EQ(lossText(file, *zeros), file + ": is damaged: 1 of 4 parts could not be read and is baked again");
@@ -193,7 +212,7 @@ TEST(Checkpoint, IsOverwrittenOnlyWhenAskedFor) {
   EXPECT_EQ(contents(file), whole);
   Result<Checkpoint> anew = Checkpoint::open(file, CheckpointUse::kRestart);
   ASSERT_TRUE(anew);
-  const Result<KeptParts> kept = anew->begin(kPlan + 1);
+  const Result<Found> kept = foundIn(*anew, kPlan + 1);
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->parts, BakedParts());
   EXPECT_LT(contents(file).size(), whole.size());
@@ -221,6 +240,41 @@ TEST(Checkpoint, ThatNothingWasWrittenToIsGone) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
+TEST(Checkpoint, GivesBackEachPartWhileOthersAreAppended) {
+  const TemporaryFolder folder;
+  Result<Checkpoint> checkpoint = Checkpoint::open(folder.file("F.parts"), CheckpointUse::kNew);
+  ASSERT_TRUE(checkpoint && checkpoint->begin(kPlan));
+  for (std::size_t n = 0; n < kFinished.size(); ++n) {
+    EXPECT_FALSE(checkpoint->read(kFinished[n].first)) << "not there yet";
+    ASSERT_TRUE(checkpoint->append(kFinished[n].first, kFinished[n].second));
+    for (std::size_t before = 0; before <= n; ++before) {
+      EXPECT_EQ(checkpoint->read(kFinished[before].first), kFinished[before].second);
+    }
+  }
+  ASSERT_TRUE(checkpoint->append(3, bytesOf("baked once more")));
+  EXPECT_EQ(checkpoint->read(3), bytesOf("baked once more"));
+}
+
+TEST(Checkpoint, GivesNoPartThatIsAlteredAfterItWasWritten) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.parts");
+  const std::vector<std::size_t> sizes = appendAll(file, CheckpointUse::kNew);
+  const std::string whole = contents(file);
+  Result<Checkpoint> checkpoint = Checkpoint::open(file, CheckpointUse::kResume);
+  ASSERT_TRUE(checkpoint && checkpoint->begin(kPlan));
+  for (std::size_t at = sizes[0]; at < whole.size(); ++at) {
+    SCOPED_TRACE(at);
+    std::string altered = whole;
+    altered[at] = static_cast<char>(altered[at] ^ 1);
+    folder.write("F.parts", altered);
+    for (std::size_t n = 0; n < kFinished.size(); ++n) {
+      const bool here = sizes[n] <= at && at < sizes[n + 1];
+      EXPECT_EQ(checkpoint->read(kFinished[n].first),
+                here ? std::nullopt : std::optional(kFinished[n].second));
+    }
+  }
+}
+
 TEST(Checkpoint, OfACompleteBakeIsGone) {
   const TemporaryFolder folder;
   {
@@ -235,7 +289,7 @@ TEST(Checkpoint, OfACompleteBakeIsGone) {
 TEST(Checkpoint, IsNotMadeOfForeignFilesOrFolders) {
   const TemporaryFolder folder;
   const std::string foreign = "a letter of somebody's, kept for years";
-  const Result<KeptParts> kept = resume(folder.write("letter", foreign));
+  const Result<Found> kept = resume(folder.write("letter", foreign));
   ASSERT_FALSE(kept);
   EXPECT_NE(kept.error().message.find("letter"), std::string::npos);
   EXPECT_EQ(contents(folder.file("letter")), foreign);

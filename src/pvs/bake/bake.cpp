@@ -7,13 +7,16 @@
 #include <string>
 #include <utility>
 
+#include "sightline/pvs/bake/write_sight.h"
 #include "src/base/byte_stream.h"
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_tree.h"
-#include "src/pvs/bake/file/byte_budget.h"
+#include "src/pvs/bake/file/assemble_parts.h"
 #include "src/pvs/bake/file/flatten.h"
 #include "src/pvs/bake/file/packed_bytes.h"
+#include "src/pvs/bake/file/part_code.h"
 #include "src/pvs/bake/file/run_code.h"
+#include "src/pvs/bake/file/write_parts.h"
 #include "src/pvs/bake/update/earlier_bake.h"
 #include "src/pvs/bake/update/recall.h"
 #include "src/pvs/format/checksum.h"
@@ -44,7 +47,6 @@ struct Bake::Data {
 namespace {
 
 constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
-constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
 // Limits of a part that is more than one cell: how many cells may be below its own, and about how much work
 // (CellOutcome::work) they may be, some 40 milliseconds. So an interrupted bake loses little, many processes
@@ -294,72 +296,6 @@ void add(BakeStats& sum, const BakeStats& stats) {
   sum.asked += stats.asked;
 }
 
-namespace {
-
-// The header of a part. After it come blocks of bytes, each with its length before it: the cells, if the part
-// has leaves, or what it sees, if it was divided into parts; the witnesses, if they are recorded; and the
-// answers, if they are. The cells, what is seen, and the witnesses are packed.
-struct PartHead {
-  std::uint64_t magic = kPartMagic, plan = 0, id = 0;
-  PartSummary summary;
-  double search_distance = 0.0;  // for the parts that it was divided into
-};
-
-void write(const PartHead& head, base::ByteWriter& bytes) {
-  bytes.add(head.magic);
-  bytes.add(head.plan);
-  bytes.add(head.id);
-  bytes.add(head.summary.leaves);
-  bytes.add(head.summary.mean_triangles);
-  bytes.add(head.summary.share);
-  bytes.add(head.search_distance);
-}
-
-PartHead readHead(base::ByteReader& bytes) {
-  PartHead head;
-  head.magic = bytes.read<std::uint64_t>();
-  head.plan = bytes.read<std::uint64_t>();
-  head.id = bytes.read<std::uint64_t>();
-  head.summary.leaves = bytes.read<std::uint32_t>();
-  head.summary.mean_triangles = bytes.read<double>();
-  head.summary.share = bytes.read<double>();
-  head.search_distance = bytes.read<double>();
-  return head;
-}
-
-void addBlock(std::span<const std::byte> block, base::ByteWriter& bytes) {
-  bytes.add(static_cast<std::uint64_t>(block.size()));
-  bytes.addBytes(block);
-}
-
-std::span<const std::byte> readBlock(base::ByteReader& bytes) {
-  const auto length = bytes.read<std::uint64_t>();
-  return bytes.readBytes(length);
-}
-
-// A part with its blocks as they are in its bytes.
-struct PartContent {
-  PartHead head;
-  std::span<const std::byte> main, witnesses, answers;
-};
-
-// Nothing if the bytes are not made up of a head and these blocks.
-std::optional<PartContent> contentOf(const BakeSettings& settings, std::span<const std::byte> part) {
-  base::ByteReader bytes(part);
-  PartContent content;
-  content.head = readHead(bytes);
-  content.main = readBlock(bytes);
-  if (settings.witnesses) {
-    content.witnesses = readBlock(bytes);
-  }
-  if (settings.answers) {
-    content.answers = readBlock(bytes);
-  }
-  return bytes.atEnd() ? std::optional(content) : std::nullopt;
-}
-
-}  // namespace
-
 struct Bake::Worker::Impl {
   Impl(std::shared_ptr<const Data> d, std::shared_ptr<const Earlier> e)
       : data(std::move(d)), earlier(std::move(e)), baker(data->scene, earlier ? &earlier->recall : nullptr) {}
@@ -515,71 +451,85 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
-// The witnesses of a part; none if they are not recorded. Nothing if the part's bytes are not witnesses.
-std::optional<std::vector<HidingWitness>> witnessesOf(const BakeSettings& settings,
-                                                      const PartContent& content) {
-  std::vector<HidingWitness> witnesses;
-  if (!settings.witnesses) {
-    return witnesses;
-  }
-  const std::optional<std::vector<std::byte>> plain = unpack(content.witnesses);
-  base::ByteReader bytes(plain ? *plain : std::span<const std::byte>());
-  return read(bytes, witnesses) && bytes.atEnd() ? std::optional(std::move(witnesses)) : std::nullopt;
+// Reads parts from those in memory, which must outlive the result.
+ReadPart readerOf(const BakedParts& parts) {
+  return [&parts](std::uint64_t id) {
+    const auto part = parts.find(id);
+    return part == parts.end() ? std::nullopt : std::optional(part->second);
+  };
 }
 
-// The cell of a part with everything below it, merged. Returns nothing if a part is missing, corrupt or of
-// another plan; `broken` is then its id.
-std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, const BakedParts& parts,
-                                    std::uint64_t id, std::uint64_t& broken) {
-  const std::uint32_t level = cellOfNumber(id).level;
-  const auto part = parts.find(id);
-  broken = id;
-  if (part == parts.end() || !bake.isPart(id, part->second)) {
-    return std::nullopt;
-  }
-  const std::optional<PartContent> content = contentOf(scene.settings, part->second);
-  const std::optional<std::vector<std::byte>> main = content ? unpack(content->main) : std::nullopt;
-  if (!main || !witnessesOf(scene.settings, *content)) {
-    return std::nullopt;
-  }
-  base::ByteReader bytes(*main);
-  const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
-  if (content->head.summary.leaves > 0) {
-    std::optional<BakedCell> cell = readCell(bytes, level, scene);
-    return cell && bytes.atEnd() ? std::move(cell) : std::nullopt;
-  }
-  Runs seen;
-  if (!readRuns(bytes, objects, seen) || !bytes.atEnd() || level >= kMaxOctreeDepth) {
-    return std::nullopt;
-  }
-  BakedCell cell;
-  cell.level = static_cast<std::uint8_t>(level);
-  for (std::uint64_t i = 0; i < 8; ++i) {
-    std::optional<BakedCell> child = cellOfPart(bake, scene, parts, 8 * id + i, broken);
-    if (!child) {
+Error brokenPart(std::uint64_t id) {
+  return Error{"bake: part " + std::to_string(id) + " is missing, broken or of another plan"};
+}
+
+// The result without cells and sets.
+BakedVisibility withoutCells(const BakeScene& scene, const SceneId& id) {
+  BakedVisibility baked;
+  baked.scene = id;
+  baked.record = {scene.settings.near_distance, scene.settings.triangle_budget, scene.settings.max_depth, {}};
+  baked.boxes = scene.boxes;
+  baked.octree.min = scene.root.min;
+  baked.octree.max = scene.root.max;
+  return baked;
+}
+
+// Reads parts as cells. The arguments must outlive the result.
+ReadCell cellReader(const Bake& bake, const BakeScene& scene, const ReadPart& read) {
+  return [&](std::uint64_t id) -> std::optional<PartCell> {
+    const std::optional<BakedPart> part = read(id);
+    if (!part || !bake.isPart(id, *part)) {
       return std::nullopt;
     }
-    cell.children.push_back(std::move(*child));
+    const std::optional<PartContent> content = contentOf(scene.settings, *part);
+    if (!content || !witnessesOf(scene.settings, *content)) {
+      return std::nullopt;
+    }
+    PartCell cell;
+    if (content->head.divided()) {
+      return soundlyDivided(scene, *content) ? std::optional(std::move(cell)) : std::nullopt;
+    }
+    cell.cell = cellOf(scene, *content);
+    return cell.cell ? std::optional(std::move(cell)) : std::nullopt;
+  };
+}
+
+// Calls visit(id, content) for all parts, by ascending id. Parts that cannot be read, and those below them,
+// are left out.
+template <typename Visit>
+void forEachPart(const BakeScene& scene, const ReadPart& read, std::uint64_t root, Visit&& visit) {
+  for (std::vector<std::uint64_t> level{root}; !level.empty();) {
+    std::vector<std::uint64_t> next;
+    for (const std::uint64_t id : level) {
+      const std::optional<BakedPart> part = read(id);
+      const std::optional<PartContent> content = part ? contentOf(scene.settings, *part) : std::nullopt;
+      if (!content) {
+        continue;
+      }
+      visit(id, *content);
+      for (std::uint64_t i = 0; i < 8 && content->head.divided(); ++i) {
+        next.push_back(8 * id + i);
+      }
+    }
+    level = std::move(next);
   }
-  mergeChildren(scene, cell);
-  return cell;
 }
 
 }  // namespace
 
 Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
+  return assemble(readerOf(parts));
+}
+
+Result<BakedVisibility> Bake::assemble(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   std::uint64_t broken = 0;
-  const std::optional<BakedCell> top = cellOfPart(*this, scene, parts, firstPart().id, broken);
+  const std::optional<BakedCell> top =
+      pvs::cellsBelow(scene, cellReader(*this, scene, read), firstPart().id, broken);
   if (!top) {
-    return Error{"bake: part " + std::to_string(broken) + " is missing, broken or of another plan"};
+    return brokenPart(broken);
   }
-  BakedVisibility baked;
-  baked.scene = data_->scene_id;
-  baked.record = {scene.settings.near_distance, scene.settings.triangle_budget, scene.settings.max_depth, {}};
-  baked.boxes = scene.boxes;
-  baked.octree.min = scene.root.min;
-  baked.octree.max = scene.root.max;
+  BakedVisibility baked = withoutCells(scene, data_->scene_id);
   if (scene.settings.byte_budget == 0) {
     flatten(*top, scene, baked);
   } else if (const std::uint64_t bytes = fitBytes(scene, *top, scene.settings.byte_budget, baked);
@@ -591,28 +541,53 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   return baked;
 }
 
+Status Bake::writeSight(const std::string& file, const ReadPart& read, const SightExtras& extras) const {
+  const BakeScene& scene = data_->scene;
+  if (scene.settings.byte_budget > 0) {
+    Result<BakedVisibility> baked = assemble(read);
+    if (!baked) {
+      return baked.error();
+    }
+    baked->record.settings = extras.settings;
+    baked->databases = extras.databases;
+    return sightline::writeSight(file, *baked);
+  }
+  BakedVisibility baked = withoutCells(scene, data_->scene_id);
+  baked.record.settings = extras.settings;
+  baked.databases = extras.databases;
+  std::uint64_t broken = 0;
+  const Status written =
+      writeParts(file, scene, cellReader(*this, scene, read), firstPart().id, baked, broken);
+  return broken == 0 ? written : Status(brokenPart(broken));
+}
+
 Witnesses Bake::witnesses(const BakedParts& parts) const {
+  return witnesses(readerOf(parts));
+}
+
+Witnesses Bake::witnesses(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
-  for (const auto& [id, part] : parts) {
-    const std::optional<PartContent> content = contentOf(scene.settings, part);
-    std::optional<std::vector<HidingWitness>> own =
-        content ? witnessesOf(scene.settings, *content) : std::nullopt;
-    if (own) {
+  forEachPart(scene, read, firstPart().id, [&](std::uint64_t, const PartContent& content) {
+    if (std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content)) {
       found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
                        std::make_move_iterator(own->end()));
     }
-  }
+  });
   return found;
 }
 
 std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
+  return answers(readerOf(parts));
+}
+
+std::vector<std::byte> Bake::answers(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
-  std::map<std::uint64_t, std::span<const std::byte>> answers;
-  for (const auto& [id, part] : parts) {
-    const std::optional<PartContent> content = contentOf(scene.settings, part);
-    answers.emplace(id, content ? content->answers : std::span<const std::byte>());
-  }
+  std::map<std::uint64_t, std::vector<std::byte>> kept;
+  forEachPart(scene, read, firstPart().id, [&](std::uint64_t id, const PartContent& content) {
+    kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
+  });
+  const std::map<std::uint64_t, std::span<const std::byte>> answers(kept.begin(), kept.end());
   return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
 }
 

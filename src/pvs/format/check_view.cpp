@@ -14,12 +14,12 @@ namespace {
 Status checkChunks(const SightView& view) {
   std::uint64_t at = 0;
   for (const Chunk& chunk : view.chunks) {
-    if (chunk.offset != at || chunk.bytes == 0 || chunk.bytes > view.payload.size() - at) {
+    if (chunk.offset != at || chunk.bytes == 0 || chunk.bytes > view.payloadBytes() - at) {
       return Error{"its chunks do not make up its payload"};
     }
     at += chunk.bytes;
   }
-  return at == view.payload.size() ? Status(Success{})
+  return at == view.payloadBytes() ? Status(Success{})
                                    : Status(Error{"its chunks do not make up its payload"});
 }
 

@@ -106,7 +106,7 @@ void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   const sight::Seal seal(0, 0);
   const sight::Scene scene(view.scene.hash, view.scene.objects, view.scene.triangles);
   const sight::Extent extent(stored(view.octree.min), stored(view.octree.max));
-  builder.Finish(sight::CreateFile(builder, kVersion, &seal, view.payload.size(), &scene, record, boxes,
+  builder.Finish(sight::CreateFile(builder, kVersion, &seal, view.payloadBytes(), &scene, record, boxes,
                                    objects, &extent, nodes, leaves, depths, reasons, planes, view.set_chunks,
                                    sets, chunks, databases, viewers, doors, group_ends, hidden, hidden_ends),
                  sight::FileIdentifier());
@@ -163,11 +163,12 @@ void sealChunks(std::span<std::byte> structure, std::span<const std::byte> paylo
   }
 }
 
-// In forged bytes, the field that is written may be part of something else, so the bytes are verified again
-// after each step.
-void sealStructure(std::span<std::byte> structure, std::span<const std::byte> payload) {
+// payload: as much of the payload_bytes as is in memory. In forged bytes, the field that is written may be
+// part of something else, so the bytes are verified again after each step.
+void sealStructure(std::span<std::byte> structure, std::span<const std::byte> payload,
+                   std::uint64_t payload_bytes) {
   if (const auto* file = verified<sight::File>(structure); file != nullptr) {
-    const std::uint64_t size = structure.size() + payload.size();
+    const std::uint64_t size = structure.size() + payload_bytes;
     std::memcpy(structure.data() + offsetIn(structure, file->seal()), &size, sizeof size);
   }
   if (const auto* file = verified<sight::File>(structure); file != nullptr) {
@@ -249,13 +250,14 @@ Result<std::vector<std::byte>> structureBytes(const SightView& view) {
   writeStructure(builder, view);
   const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
   std::vector<std::byte> bytes(begin, begin + builder.GetSize());
-  sealStructure(bytes, view.payload);
+  sealStructure(bytes, view.payload, view.payloadBytes());
   return bytes;
 }
 
 void seal(std::span<std::byte> bytes) {
   if (const std::optional<std::size_t> size = structureSize(bytes)) {
-    sealStructure(bytes.first(*size), bytes.subspan(*size));
+    const std::span<const std::byte> payload = bytes.subspan(*size);
+    sealStructure(bytes.first(*size), payload, payload.size());
   }
 }
 

@@ -21,7 +21,8 @@ inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint64_t kMaxStructureBytes = 0x7ffffffeu;  // a FlatBuffer is smaller than 2^31 - 1
 
 // Chunks of sets are about kSetChunkBytes long before compression, so that one is decompressed in a few
-// microseconds. None is longer than kMaxSetChunkBytes, except for a single set that is longer itself.
+// microseconds, or as long as a few sets where these are longer. None is longer than kMaxSetChunkBytes,
+// except for a single set that is longer itself.
 inline constexpr std::uint32_t kSetChunkBytes = 2048;
 inline constexpr std::uint32_t kMaxSetChunkBytes = 65536;
 inline constexpr std::uint32_t kDatabaseChunkBytes = 1u << 20;
@@ -62,7 +63,10 @@ struct SightView {
   std::span<const Chunk> chunks;  // chunks of sets, then those of databases in their order
   std::vector<DatabaseEntry> databases;
   std::span<const std::byte> payload;
+  // Bytes of the payload that are not in memory, but follow `payload` in the file; while one is written.
+  std::uint64_t payload_elsewhere = 0;
 
+  std::uint64_t payloadBytes() const { return payload.size() + payload_elsewhere; }
   std::span<const std::byte> bytesOf(const Chunk& chunk) const {
     return payload.subspan(chunk.offset, chunk.bytes);
   }
@@ -74,9 +78,9 @@ struct SightView {
   }
 };
 
-// The bytes of a file's structure, including checksums of chunks and the seal. The file consists of these
-// bytes and those of view.payload. The view is not checked. Returns an error if the structure would be too
-// long.
+// The bytes of a file's structure, including the seal, and checksums of the chunks in view.payload; others
+// must have theirs. The file consists of these bytes and those of the payload. The view is not checked.
+// Returns an error if the structure would be too long.
 Result<std::vector<std::byte>> structureBytes(const SightView& view);
 
 // Writes the checksums of chunks and the seal into the bytes of a whole file, overwriting those that are

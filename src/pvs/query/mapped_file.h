@@ -20,6 +20,9 @@ class MappedFile {
   static Result<MappedFile> open(const std::string& file);
 
   std::span<const std::byte> bytes() const { return {begin_, size_}; }
+  // Gives the memory of these bytes of the file back; they are read from the disk again when they are asked
+  // for. Nobody may have written to them.
+  void release(std::span<const std::byte> part) const;
 
  private:
   const std::byte* begin_ = nullptr;

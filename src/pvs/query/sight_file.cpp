@@ -147,14 +147,22 @@ Status SightFile::readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) 
 
 Status SightFile::forEachSet(
     const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const {
+  constexpr std::uint64_t kKept = 16u << 20;  // bytes of the payload whose pages stay in memory behind it
+  const SightView& view = data_->view;
   ChunkDecoder decoder;
   std::vector<std::uint32_t> nodes;
+  std::uint64_t released = 0;
   for (std::uint32_t set = 0; set < setCount(); ++set) {
     nodes.clear();
-    if (!decoder.readSet(data_->view, set, nodes)) {
+    if (!decoder.readSet(view, set, nodes)) {
       return brokenSet(data_->name, set);
     }
     visit(set, nodes);
+    const std::uint64_t at = view.chunks[view.sets[set].chunk].offset;
+    if (at - released > kKept && !data_->mapped.bytes().empty()) {
+      data_->mapped.release(view.payload.subspan(released, at - released));
+      released = at;
+    }
   }
   return Success{};
 }

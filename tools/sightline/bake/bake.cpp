@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -12,7 +14,6 @@
 #include <utility>
 
 #include "sightline/io/file.h"
-#include "sightline/pvs/bake/write_sight.h"
 #include "tools/sightline/bake/bake_databases.h"
 #include "tools/sightline/bake/bake_options.h"
 #include "tools/sightline/bake/bake_report.h"
@@ -20,6 +21,7 @@
 #include "tools/sightline/bake/bake_warning.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
@@ -218,58 +220,80 @@ Result<Planned> planBake(const BakeOptions& options) {
                  load_us,           watch.lap(),    std::move(viewpoints), std::move(update)};
 }
 
-// Assembles all parts, and writes the files that belong beside the baked one.
-Result<BakedVisibility> assemble(const BakeOptions& options, const Planned& planned, BakeReport& report,
-                                 BakedParts parts) {
-  Result<BakedVisibility> baked = planned.bake.assemble(parts);
-  if (!baked) {
-    return baked.error();
-  }
+// Writes the files that belong beside the baked one, which is written: so all parts are there.
+Status writeCompanions(const BakeOptions& options, const Bake& bake, const ReadPart& parts) {
+  const auto save = [](const std::string& file, const std::vector<std::byte>& bytes) {
+    return saveFile(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  };
   if (!options.witnesses.empty()) {
-    const std::vector<std::byte> bytes = witnessBytes(planned.bake.witnesses(parts));
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (const Status ok = saveFile(options.witnesses, text); !ok) {
-      return ok.error();
+    if (const Status ok = save(options.witnesses, witnessBytes(bake.witnesses(parts))); !ok) {
+      return ok;
     }
   }
   if (const std::string file = options.answersFile(); !file.empty()) {
-    const std::vector<std::byte> bytes = planned.bake.answers(parts);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (const Status ok = saveFile(file, text); !ok) {
-      return ok.error();
-    }
+    return save(file, bake.answers(parts));
   }
-  parts = {};
-  baked->record.settings =
-      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
-  Stopwatch watch;
+  return Success{};
+}
+
+// What the baked file has beside its cells.
+SightExtras extrasOf(const BakeOptions& options, const Planned& planned) {
+  SightExtras extras;
+  extras.settings = dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
   const Threads threads(options.common.threads);
   std::optional<Scene> open;  // with all doors open, if there are any
-  if (!baked->doors.doors.empty()) {
+  if (const std::vector<std::vector<ObjectId>>& groups = planned.bake.settings().doors; !groups.empty()) {
     open = planned.scene;
-    openOtherDoors(baked->doors.view(), {}, *open);
+    for (const std::vector<ObjectId>& group : groups) {
+      openOtherDoors({.doors = group}, {}, *open);
+    }
   }
-  baked->databases = buildDatabases(open ? *open : planned.scene,
+  extras.databases = buildDatabases(open ? *open : planned.scene,
                                     {*databaseNames(options), options.viewpoints, planned.viewpoints},
                                     threads.parallelFor());
-  report.times.databases = watch.lap();
-  return baked;
+  return extras;
+}
+
+// Writes the baked file. If the process is told to end before all parts are read for it, which may take
+// minutes, it ends here and leaves the parts alone. Precondition: a SignalGuard lives.
+Status writeBaked(const BakeOptions& options, const Bake& bake, const SightExtras& extras,
+                  std::uint64_t part_count, Checkpoint& checkpoint) {
+  ProgressBar bar("writing");
+  std::uint64_t begun = 0;
+  const auto read = [&](std::uint64_t part) -> std::optional<BakedPart> {
+    bar.update(static_cast<double>(begun) / static_cast<double>(part_count));
+    begun += 1;
+    return toldToEnd() == 0 ? checkpoint.read(part) : std::nullopt;
+  };
+  const Status written = bake.writeSight(options.output, read, extras);
+  if (!written && toldToEnd() != 0) {
+    const bool kept = checkpoint.flush().has_value();
+    bar.say(
+        fmt::format("interrupted; {0} of the {0} parts known so far are {1}; the same command with --resume "
+                    "goes on",
+                    part_count, kept ? "kept" : "kept, as far as they could be written"));
+    std::fflush(stderr);
+    std::_Exit(interruptedExitCode());
+  }
+  return written;
 }
 
 // Writes the files of the bake from all of its parts, and reports what is in them.
 Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
-                        BakedParts parts, Checkpoint& checkpoint) {
+                        Checkpoint& checkpoint) {
   const auto unfinished = [&](const Error& error) {
     return Error{fmt::format("{}; the finished parts are kept in {}, and --resume goes on from there",
                              error.message, options.partsFile())};
   };
-  const Result<BakedVisibility> baked = assemble(options, planned, report, std::move(parts));
-  if (!baked) {
-    return unfinished(baked.error());
-  }
   Stopwatch watch;
-  const SignalGuard guard;  // from here on finishing is faster than stopping
-  if (const Status ok = writeSight(options.output, *baked); !ok) {
+  const SightExtras extras = extrasOf(options, planned);
+  report.times.databases = watch.lap();
+  const SignalGuard guard;
+  if (const Status ok = writeBaked(options, planned.bake, extras, report.parts, checkpoint); !ok) {
+    return unfinished(ok.error());
+  }
+  const ReadPart parts = [&](std::uint64_t part) { return checkpoint.read(part); };
+  if (const Status ok = writeCompanions(options, planned.bake, parts); !ok) {
     return unfinished(ok.error());
   }
   report.times.write = watch.lap();
@@ -313,7 +337,7 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
     return own.error();
   }
   Result<Planned> planned = planBake(options);
-  BakedParts parts;
+  std::vector<std::uint64_t> parts;  // that are kept from before
   if (!planned) {
     own = planned.error();
   } else if (checkpoint) {
@@ -347,14 +371,14 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   report.times.load = planned->load_us;
   report.times.plan = planned->plan_us;
   Stopwatch watch;
-  Result<BakedParts> all =
-      bakeAsFirst(planned->bake, world, options.common.threads, *checkpoint, std::move(parts), report.effort);
+  const Result<std::uint64_t> all =
+      bakeAsFirst(planned->bake, world, options.common.threads, *checkpoint, parts, report.effort);
   if (!all) {
     return all.error();
   }
   report.times.bake = watch.lap();
-  report.parts = all->size();
-  return finish(options, *planned, report, std::move(*all), *checkpoint);
+  report.parts = *all;
+  return finish(options, *planned, report, *checkpoint);
 }
 
 Result<ExitCode> runBake(const BakeOptions& options) {

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <optional>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -107,8 +108,9 @@ class FirstBaker {
         queue_(takers_),
         wanted_(static_cast<std::size_t>(world.size())) {}
 
-  Result<BakedParts> run(BakedParts known) {
-    begin(std::move(known));
+  // Returns the number of parts.
+  Result<std::uint64_t> run(std::span<const std::uint64_t> known) {
+    begin(known);
     const SignalGuard guard;
     ProgressBar bar("baking", share_);
     BakeThreads threads(bake_, queue_, threads_, !checks_known_);
@@ -130,13 +132,13 @@ class FirstBaker {
     }
     queue_.close();
     add(effort_.stats, threads.join());
-    return std::move(parts_);
+    return done_;
   }
 
  private:
   // Takes over the parts that are already baked and queues those that are missing.
-  void begin(BakedParts known) {
-    known_ = std::move(known);
+  void begin(std::span<const std::uint64_t> known) {
+    known_.insert(known.begin(), known.end());
     open_ = 1;
     effort_.processes = static_cast<std::uint32_t>(world_.size());
     effort_.threads = threads_;
@@ -151,15 +153,15 @@ class FirstBaker {
     while (!next.empty()) {
       const PartTask task = next.back();
       next.pop_back();
-      const auto part = known_.find(task.id);
-      if (part == known_.end() || !bake_.isPart(task.id, part->second)) {
+      const std::optional<BakedPart> part =
+          known_.erase(task.id) > 0 ? checkpoint_.read(task.id) : std::nullopt;
+      if (!part || !bake_.isPart(task.id, *part)) {
         missing.push_back(task);
         continue;
       }
-      const std::vector<PartTask> below = bake_.partsBelow(part->second);
+      const std::vector<PartTask> below = bake_.partsBelow(*part);
       next.insert(next.end(), below.rbegin(), below.rend());
-      count(part->second);
-      parts_.insert(known_.extract(part));
+      count(*part);
       effort_.parts_before += 1;
     }
     return missing;
@@ -167,10 +169,10 @@ class FirstBaker {
 
   // Handles what threads and other processes have done since the last call.
   Status look() {
-    for (FinishedPart& finished : queue_.finished(world_.size() > 1 ? kLook : kPatience)) {
+    for (const FinishedPart& finished : queue_.finished(world_.size() > 1 ? kLook : kPatience)) {
       const std::vector<PartTask> below =
           checks_known_ ? bake_.partsBelow(finished.bytes) : std::vector<PartTask>{};
-      if (const Status ok = keep(std::move(finished)); !ok) {
+      if (const Status ok = keep(finished); !ok) {
         return ok;
       }
       queue_.add(0, missingOf(below));
@@ -238,9 +240,9 @@ class FirstBaker {
     }
     if (message.tag == kDone) {
       const std::uint64_t id = reader.number();
-      FinishedPart part{id, BakedPart(reader.rest().begin(), reader.rest().end())};
+      const FinishedPart part{id, BakedPart(reader.rest().begin(), reader.rest().end())};
       const std::vector<PartTask> below = bake_.partsBelow(part.bytes);
-      if (const Status ok = keep(std::move(part)); !ok) {
+      if (const Status ok = keep(part); !ok) {
         return ok;
       }
       queue_.add(takerOf(message.from), missingOf(below));
@@ -267,12 +269,11 @@ class FirstBaker {
     return Success{};
   }
 
-  Status keep(FinishedPart finished) {
+  Status keep(const FinishedPart& finished) {
     if (const Status ok = checkpoint_.append(finished.id, finished.bytes); !ok) {
       return ok;
     }
     count(finished.bytes);
-    parts_.emplace(finished.id, std::move(finished.bytes));
     return Success{};
   }
 
@@ -280,6 +281,7 @@ class FirstBaker {
     const PartSummary summary = bake_.summaryOf(part);
     open_ += summary.leaves == 0 ? 8 : 0;  // a part without leaves was divided
     open_ -= 1;
+    done_ += 1;
     leaves_ += summary.leaves;
     triangles_ += summary.mean_triangles * summary.leaves;
     share_ += summary.share;
@@ -312,8 +314,8 @@ class FirstBaker {
         fmt::format("interrupted; {} of the {} parts known so far are {}, {:.1f} % of the viewers' space; "
                     "the same command "
                     "with --resume goes on",
-                    parts_.size(), parts_.size() + open_,
-                    kept ? "kept" : "kept, as far as they could be written", 100.0 * std::min(share_, 1.0)));
+                    done_, done_ + open_, kept ? "kept" : "kept, as far as they could be written",
+                    100.0 * std::min(share_, 1.0)));
     std::fflush(stderr);
     std::_Exit(interruptedExitCode());  // threads are in the middle of parts and cannot be joined
   }
@@ -322,13 +324,13 @@ class FirstBaker {
   MpiWorld& world_;
   std::uint32_t threads_;
   Checkpoint& checkpoint_;
-  BakedParts parts_;
-  BakedParts known_;           // baked before, and not yet in parts_: the part above them was lost
-  bool checks_known_ = false;  // whether there are such, so that the threads must not queue them
+  std::set<std::uint64_t> known_;  // baked before, and not yet counted: the part above them was lost
+  bool checks_known_ = false;      // whether there are such, so that the threads must not queue them
   BakeEffort& effort_;
   std::uint32_t takers_;  // the threads of this process, and the other processes
   PartQueue queue_;
   std::vector<Wanted> wanted_;  // by process
+  std::uint64_t done_ = 0;      // parts that are baked, now or before
   std::uint64_t open_ = 0;      // parts that are known and not yet baked
   std::uint64_t leaves_ = 0;
   double triangles_ = 0.0;  // sum over all sets
@@ -365,9 +367,10 @@ Status agree(MpiWorld& world, const Status& own, std::uint64_t number) {
   return all;
 }
 
-Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
-                               Checkpoint& checkpoint, BakedParts known, BakeEffort& effort) {
-  return FirstBaker(bake, world, threads, checkpoint, effort).run(std::move(known));
+Result<std::uint64_t> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
+                                  Checkpoint& checkpoint, std::span<const std::uint64_t> known,
+                                  BakeEffort& effort) {
+  return FirstBaker(bake, world, threads, checkpoint, effort).run(known);
 }
 
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {

@@ -3,6 +3,7 @@
 // Bakes all parts of a plan with the threads of one process or of several.
 
 #include <cstdint>
+#include <span>
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/bake/bake.h"
@@ -24,11 +25,12 @@ struct BakeEffort {
 // only that there is one. It is also an error if number differs between processes.
 Status agree(MpiWorld& world, const Status& own, std::uint64_t number);
 
-// The first process's part of the work: hands out parts, keeps finished ones, and bakes too. known holds the
-// parts that were baked before. If the process is told to end (SIGINT, SIGTERM), it ends here with the
-// checkpoint whole.
-Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
-                               Checkpoint& checkpoint, BakedParts known, BakeEffort& effort);
+// The first process's part of the work: hands out parts, keeps finished ones in the checkpoint alone, and
+// bakes too. known: the ids of the parts that are there from before. Returns the number of parts. If the
+// process is told to end (SIGINT, SIGTERM), it ends here with the checkpoint whole.
+Result<std::uint64_t> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
+                                  Checkpoint& checkpoint, std::span<const std::uint64_t> known,
+                                  BakeEffort& effort);
 
 // The other processes' part: they bake what the first process gives them until there is no more.
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads);

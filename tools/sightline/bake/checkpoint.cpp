@@ -22,8 +22,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "sightline/io/file.h"
-
 namespace sightline::tool {
 namespace {
 
@@ -70,45 +68,37 @@ std::optional<RecordHead> readHead(std::string_view bytes) {
   return whole ? std::optional(head) : std::nullopt;
 }
 
-struct Records {
-  KeptParts kept;
-  std::size_t whole = 0;  // bytes of the records before the first that could not be read
-  std::string after;      // the other records that could be read
-};
-
-Records readRecords(std::string_view bytes) {
-  Records records;
-  KeptParts& kept = records.kept;
-  while (!bytes.empty()) {
-    const std::optional<RecordHead> head = readHead(bytes);
-    if (!head) {
-      const bool cut =
-          bytes.size() < sizeof(RecordHead) && bytes.substr(0, kMark.size()) == kMark.substr(0, bytes.size());
-      kept.unreadable += 1;
-      kept.damaged |= !cut;
-      bytes.remove_prefix(std::min(bytes.find(kMark, 1), bytes.size()));
-      continue;
+// Reads `count` bytes of the file from `offset` on. False if there are fewer, or none can be read.
+bool readAt(int descriptor, std::uint64_t offset, void* bytes, std::size_t count) {
+  char* next = static_cast<char*>(bytes);
+  while (count > 0) {
+    const ssize_t read = ::pread(descriptor, next, count, static_cast<off_t>(offset));
+    if (read == 0 || (read < 0 && errno != EINTR)) {
+      return false;
     }
-    if (head->length > bytes.size() - sizeof(*head)) {
-      kept.unreadable += 1;
-      break;
-    }
-    const std::string_view record = bytes.substr(0, sizeof(*head) + head->length);
-    bytes.remove_prefix(record.size());
-    const std::span part = std::as_bytes(std::span(record.substr(sizeof(*head))));
-    if (XXH3_64bits(part.data(), part.size()) != head->bytes_checksum) {
-      kept.unreadable += 1;
-      kept.damaged = true;
-      continue;
-    }
-    kept.parts.insert_or_assign(head->part, BakedPart(part.begin(), part.end()));
-    if (kept.unreadable == 0) {
-      records.whole += record.size();
-    } else {
-      records.after += record;
+    if (read > 0) {
+      next += read;
+      offset += static_cast<std::uint64_t>(read);
+      count -= static_cast<std::size_t>(read);
     }
   }
-  return records;
+  return true;
+}
+
+// The first mark of a record in [begin, end) of the file, or end.
+std::uint64_t findMark(int descriptor, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t kStep = 1u << 20;
+  std::string step;
+  for (std::uint64_t at = begin; at < end; at += kStep) {
+    step.resize(static_cast<std::size_t>(std::min(end - at, kStep + kMark.size() - 1)));
+    if (!readAt(descriptor, at, step.data(), step.size())) {
+      return end;
+    }
+    if (const std::size_t found = step.find(kMark); found != std::string::npos) {
+      return at + found;
+    }
+  }
+  return end;
 }
 
 }  // namespace
@@ -159,6 +149,8 @@ Checkpoint::Checkpoint(Checkpoint&& other) noexcept
     : file_(std::move(other.file_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       use_(other.use_),
+      places_(std::move(other.places_)),
+      size_(other.size_),
       flushed_(other.flushed_) {}
 
 Checkpoint::~Checkpoint() {
@@ -172,47 +164,123 @@ Checkpoint::~Checkpoint() {
 }
 
 Result<KeptParts> Checkpoint::begin(std::uint64_t plan) {
-  Records records;
-  Header header{};
-  std::memcpy(header.magic, kMagic, sizeof(kMagic));
-  header.plan = plan;
-  const std::string_view wanted(reinterpret_cast<const char*>(&header), sizeof(header));
-  std::size_t whole = 0;
+  KeptParts kept;
+  Header wanted{};
+  std::memcpy(wanted.magic, kMagic, sizeof(kMagic));
+  wanted.plan = plan;
+  std::uint64_t whole = 0;
   if (use_ == CheckpointUse::kResume) {
-    const Result<std::string> bytes = readFile(file_);
-    if (!bytes) {
-      return bytes.error();
+    struct stat facts {};
+    Header start{};
+    if (::fstat(descriptor_, &facts) != 0) {
+      return failure("cannot be read");
     }
-    const std::string_view start = std::string_view(*bytes).substr(0, sizeof(header));
-    if (start.size() == sizeof(header)) {
-      if (start != wanted) {
+    const auto size = static_cast<std::uint64_t>(facts.st_size);
+    const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(size, sizeof(start)));
+    if (!readAt(descriptor_, 0, &start, length)) {
+      return failure("cannot be read");
+    }
+    if (length == sizeof(start)) {
+      if (std::memcmp(&start, &wanted, sizeof(start)) != 0) {
         return Error{fmt::format(
             "{}: is of another scene or other settings; go on with those, or begin anew with --restart",
             file_)};
       }
-      records = readRecords(std::string_view(*bytes).substr(sizeof(header)));
-      whole = sizeof(header) + records.whole;
+      const Result<std::uint64_t> end = gather(size, kept);
+      if (!end) {
+        return end.error();
+      }
+      whole = *end;
     }
-    records.kept.no_header = !start.empty() && whole == 0;
+    kept.no_header = length > 0 && whole == 0;
   }
   if (::ftruncate(descriptor_, static_cast<off_t>(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) {
     return failure("cannot be written");
   }
-  const std::string_view missing = whole == 0 ? wanted : std::string_view(records.after);
-  if (const Status ok = writeAll(missing.data(), missing.size()); !ok) {
-    return ok.error();
+  size_ = whole;
+  if (whole == 0) {
+    if (const Status ok = writeAll(&wanted, sizeof(wanted)); !ok) {
+      return ok.error();
+    }
   }
-  return std::move(records.kept);
+  for (const auto& [part, place] : places_) {
+    kept.parts.push_back(part);
+  }
+  return kept;
+}
+
+// A record that is moved is in memory while it is written, so it may overlap the place where it was.
+Result<std::uint64_t> Checkpoint::gather(std::uint64_t size, KeptParts& kept) {
+  std::uint64_t end = sizeof(Header);  // of what is kept
+  BakedPart bytes;
+  for (std::uint64_t at = sizeof(Header); at < size;) {
+    char start[sizeof(RecordHead)];
+    const std::uint64_t left = size - at;
+    const std::string_view text(start,
+                                static_cast<std::size_t>(std::min<std::uint64_t>(left, sizeof(start))));
+    if (!readAt(descriptor_, at, start, text.size())) {
+      return failure("cannot be read");
+    }
+    const std::optional<RecordHead> head = readHead(text);
+    if (!head) {
+      const bool cut =
+          left < sizeof(RecordHead) && text.substr(0, kMark.size()) == kMark.substr(0, text.size());
+      kept.unreadable += 1;
+      kept.damaged |= !cut;
+      at = findMark(descriptor_, at + 1, size);
+      continue;
+    }
+    if (head->length > left - sizeof(*head)) {
+      kept.unreadable += 1;
+      break;
+    }
+    bytes.resize(static_cast<std::size_t>(head->length));
+    if (!readAt(descriptor_, at + sizeof(*head), bytes.data(), bytes.size())) {
+      return failure("cannot be read");
+    }
+    const std::uint64_t record = sizeof(*head) + head->length;
+    if (XXH3_64bits(bytes.data(), bytes.size()) != head->bytes_checksum) {
+      kept.unreadable += 1;
+      kept.damaged = true;
+    } else {
+      if (end < at) {
+        if (::lseek(descriptor_, static_cast<off_t>(end), SEEK_SET) < 0) {
+          return failure("cannot be written");
+        }
+        if (const Status ok = writeRecord(head->part, bytes); !ok) {
+          return ok.error();
+        }
+      }
+      places_.insert_or_assign(head->part, Place{end, head->length});
+      end += record;
+    }
+    at += record;
+  }
+  return end;
+}
+
+std::optional<BakedPart> Checkpoint::read(std::uint64_t part) const {
+  const auto place = places_.find(part);
+  char start[sizeof(RecordHead)];
+  if (place == places_.end() || !readAt(descriptor_, place->second.offset, start, sizeof(start))) {
+    return std::nullopt;
+  }
+  const std::optional<RecordHead> head = readHead({start, sizeof(start)});
+  if (!head || head->part != part || head->length != place->second.length) {
+    return std::nullopt;
+  }
+  BakedPart bytes(static_cast<std::size_t>(head->length));
+  const bool whole = readAt(descriptor_, place->second.offset + sizeof(*head), bytes.data(), bytes.size()) &&
+                     XXH3_64bits(bytes.data(), bytes.size()) == head->bytes_checksum;
+  return whole ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
 Status Checkpoint::append(std::uint64_t part, const BakedPart& bytes) {
-  const RecordHead head = headOf(part, bytes);
-  if (const Status ok = writeAll(&head, sizeof(head)); !ok) {
+  const Place place{size_, bytes.size()};
+  if (const Status ok = writeRecord(part, bytes); !ok) {
     return ok;
   }
-  if (const Status ok = writeAll(bytes.data(), bytes.size()); !ok) {
-    return ok;
-  }
+  places_.insert_or_assign(part, place);
   return std::chrono::steady_clock::now() - flushed_ < kFlushEvery ? Status(Success{}) : flush();
 }
 
@@ -225,6 +293,12 @@ Status Checkpoint::remove() {
   return ::unlink(file_.c_str()) == 0 ? Status(Success{}) : failure("cannot be removed");
 }
 
+Status Checkpoint::writeRecord(std::uint64_t part, const BakedPart& bytes) {
+  const RecordHead head = headOf(part, bytes);
+  const Status ok = writeAll(&head, sizeof(head));
+  return ok ? writeAll(bytes.data(), bytes.size()) : ok;
+}
+
 Status Checkpoint::writeAll(const void* bytes, std::size_t count) {
   const char* next = static_cast<const char*>(bytes);
   while (count > 0) {
@@ -235,6 +309,7 @@ Status Checkpoint::writeAll(const void* bytes, std::size_t count) {
     if (written > 0) {
       next += written;
       count -= static_cast<std::size_t>(written);
+      size_ += static_cast<std::uint64_t>(written);
     }
   }
   return Success{};

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -104,6 +105,14 @@ struct PartTask {
 // The result of one part as plain bytes, the same wherever it was baked.
 using BakedPart = std::vector<std::byte>;
 using BakedParts = std::map<std::uint64_t, BakedPart>;  // by PartTask::id
+// Reads a part from where it is kept, such as a file; nothing if it is not there.
+using ReadPart = std::function<std::optional<BakedPart>(std::uint64_t id)>;
+
+// What is in a .sight file beside what is baked.
+struct SightExtras {
+  std::string settings{};  // BakeRecord::settings
+  std::vector<DatabaseBlob> databases{};
+};
 
 struct PartSummary {
   std::uint32_t leaves = 0;     // 0 if the part was divided into parts
@@ -135,7 +144,7 @@ struct OccluderCounts {
 // The plan of a bake: everything that its parts share. Immutable; any number of threads may bake parts.
 //
 //   std::vector<PartTask> open{bake.firstPart()};   // until it is empty: take one, bake it, add partsBelow
-//   BakedParts parts;                               // then assemble
+//   BakedParts parts;                               // then assemble, or writeSight
 class Bake {
  public:
   // scene and occluders need not outlive the plan. occluders: all that are to be considered; area_fraction =
@@ -202,13 +211,20 @@ class Bake {
   // parts: all parts of the plan. The result is the same whoever baked them. Returns an error if a part is
   // missing or its bytes are not of this plan, or if no cells are few enough for the byte budget.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
+  Result<BakedVisibility> assemble(const ReadPart& read) const;
+  // Assembles and writes the file as writeSight() does, with the same bytes, but has no more than a part and
+  // the octree without its sets in memory. Each part is read once. Not so with a byte budget, for which all
+  // sets are in memory. Payload that is not in its place yet is in a nameless file beside the target.
+  Status writeSight(const std::string& file, const ReadPart& read, const SightExtras& extras = {}) const;
   // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
   // as for assemble(), which must have succeeded with them.
   Witnesses witnesses(const BakedParts& parts) const;
+  Witnesses witnesses(const ReadPart& read) const;
   // The answers to all that was asked, as bytes of a file, if BakeSettings::answers is set: for takeOver() of
   // a bake of the scene after a change. Parts as for assemble(), which must have succeeded with them.
   std::vector<std::byte> answers(const BakedParts& parts) const;
+  std::vector<std::byte> answers(const ReadPart& read) const;
   // True if the bytes, eight at least, begin as those of answers() do.
   static bool beginsAsAnswers(std::span<const std::byte> bytes);
 

@@ -1,9 +1,6 @@
 #include "src/pvs/bake/file/encode_sight.h"
 
-#include <zstd.h>
-
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -15,71 +12,36 @@ namespace {
 
 using namespace pvs;
 
-// Both levels decompress equally fast. Sets are compressed hardest because they make up most of a file.
-constexpr int kSetLevel = 19;
-constexpr int kDatabaseLevel = 9;
+constexpr int kDatabaseLevel = 9;  // of zstd
 
-class Compressor {
- public:
-  explicit Compressor(EncodedChunks& encoded) : encoded_(encoded), context_(ZSTD_createCCtx()) {}
-
-  // Appends a chunk. A zstd frame compressed in one call stores its size.
-  void append(std::span<const std::byte> raw, int level) {
-    std::vector<std::byte>& payload = encoded_.payload;
-    const std::size_t offset = payload.size();
-    payload.resize(offset + ZSTD_compressBound(raw.size()));
-    const std::size_t written = ZSTD_compressCCtx(context_.get(), payload.data() + offset,
-                                                  payload.size() - offset, raw.data(), raw.size(), level);
-    // With room for the bound, compression fails only if memory runs out; the check finds the resulting empty
-    // chunk.
-    payload.resize(offset + (ZSTD_isError(written) != 0 ? 0 : written));
-    encoded_.chunks.push_back({0, offset, static_cast<std::uint32_t>(payload.size() - offset),
-                               static_cast<std::uint32_t>(raw.size())});
-  }
-
- private:
-  struct Free {
-    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
-  };
-
-  EncodedChunks& encoded_;
-  std::unique_ptr<ZSTD_CCtx, Free> context_;
-};
-
-// Packs sets into a chunk until the next one would make it too long.
-void encodeSets(const NodeSets& sets, std::span<const BoxNode> tree, Compressor& compressor,
-                EncodedChunks& encoded) {
-  std::vector<std::byte> raw, set_bytes;
-  const auto finishChunk = [&] {
-    if (!raw.empty()) {
-      compressor.append(raw, kSetLevel);
-      raw.clear();
-    }
-  };
-  for (std::uint32_t set = 0; set < sets.count(); ++set) {
-    set_bytes.clear();
-    appendSet(set_bytes, sets[set], tree);
-    if (raw.size() + set_bytes.size() > kSetChunkBytes) {
-      finishChunk();
-    }
-    encoded.sets.push_back(
-        {static_cast<std::uint32_t>(encoded.chunks.size()), static_cast<std::uint32_t>(raw.size())});
-    raw.insert(raw.end(), set_bytes.begin(), set_bytes.end());
-  }
-  finishChunk();
-  encoded.set_chunks = static_cast<std::uint32_t>(encoded.chunks.size());
-}
-
-void encodeDatabase(const DatabaseBlob& blob, Compressor& compressor, EncodedChunks& encoded) {
+void encodeDatabase(const DatabaseBlob& blob, ChunkWriter& writer, EncodedChunks& encoded) {
   DatabaseEntry entry{blob.name, blob.occluders, blob.bytes.size(),
                       static_cast<std::uint32_t>(encoded.chunks.size()), 0};
   for (std::span<const std::byte> rest(blob.bytes); !rest.empty(); ++entry.chunk_count) {
     const std::size_t length = std::min<std::size_t>(rest.size(), kDatabaseChunkBytes);
-    compressor.append(rest.first(length), kDatabaseLevel);
+    writer.append(rest.first(length), kDatabaseLevel);
     rest = rest.subspan(length);
   }
   encoded.databases.push_back(entry);
 }
+
+class PayloadInMemory final : public Payload {
+ public:
+  explicit PayloadInMemory(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+
+  bool append(std::span<const std::byte> bytes) override {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+  bool read(std::uint64_t offset, std::span<std::byte> bytes) override {
+    std::ranges::copy(std::span(bytes_).subspan(static_cast<std::size_t>(offset), bytes.size()),
+                      bytes.begin());
+    return true;
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
 
 Status checkSetsOf(const BakedVisibility& baked) {
   const NodeSets& sets = baked.sets;
@@ -98,13 +60,22 @@ Status checkSetsOf(const BakedVisibility& baked) {
 
 }  // namespace
 
+void encodeDatabases(std::span<const DatabaseBlob> databases, Payload& payload, EncodedChunks& encoded) {
+  ChunkWriter writer(payload, encoded);
+  for (const DatabaseBlob& blob : databases) {
+    encodeDatabase(blob, writer, encoded);
+  }
+}
+
 EncodedChunks encodeChunks(const BakedVisibility& baked) {
   EncodedChunks encoded;
-  Compressor compressor(encoded);
-  encodeSets(baked.sets, baked.boxes.nodes, compressor, encoded);
-  for (const DatabaseBlob& blob : baked.databases) {
-    encodeDatabase(blob, compressor, encoded);
+  PayloadInMemory payload(encoded.payload);
+  SetWriter sets(baked.boxes.nodes, payload, encoded);
+  for (std::uint32_t set = 0; set < baked.sets.count(); ++set) {
+    sets.add(baked.sets[set]);
   }
+  sets.finish();
+  encodeDatabases(baked.databases, payload, encoded);
   return encoded;
 }
 

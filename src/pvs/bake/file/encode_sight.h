@@ -7,18 +7,13 @@
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/format/baked_visibility.h"
+#include "src/pvs/bake/file/set_writer.h"
 #include "src/pvs/format/sight_view.h"
 
 namespace sightline::pvs {
 
-// The compressed chunks of sets and databases.
-struct EncodedChunks {
-  std::vector<pvs::Chunk> chunks;  // without checksums; structureBytes fills them in
-  std::uint32_t set_chunks = 0;    // number of chunks of sets, which come first
-  std::vector<pvs::SetPlace> sets;
-  std::vector<pvs::DatabaseEntry> databases;  // names point into the baked data
-  std::vector<std::byte> payload;
-};
+// Appends the chunks of the databases to those of the sets, which must be finished.
+void encodeDatabases(std::span<const DatabaseBlob> databases, Payload& payload, EncodedChunks& encoded);
 
 // Compresses without any checks.
 EncodedChunks encodeChunks(const BakedVisibility& baked);
