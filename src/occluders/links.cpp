@@ -26,7 +26,6 @@
 namespace sightline::occluders {
 namespace {
 
-constexpr std::size_t kPolygonsOfPart = 4096;
 constexpr std::size_t kAhead = 8;  // places for which memory is asked for early
 
 // False where a corner is sharper than three degrees: near it, a neighbour's own boundary would be too close

@@ -10,7 +10,7 @@
 namespace sightline::occluders {
 namespace {
 
-constexpr std::size_t kPolygonsOfPart = 4096, kLowVerticesOfPart = 16384;
+constexpr std::size_t kLowVerticesOfPart = 16384;
 
 }  // namespace
 

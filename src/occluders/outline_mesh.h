@@ -17,6 +17,8 @@
 
 namespace sightline::occluders {
 
+inline constexpr std::size_t kPolygonsOfPart = 4096;  // for which one thread does the work of a step
+
 // Numbers what the outlines have, in the order of the given polygons, where neighbours are close in memory.
 // "Place" is the number of a polygon among them, "edge" that of an edge from one corner to the next, "use"
 // that of a mesh edge on such an edge, counted from the first corner on.

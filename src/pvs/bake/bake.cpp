@@ -12,6 +12,7 @@
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/file/assemble_parts.h"
+#include "src/pvs/bake/file/byte_budget.h"
 #include "src/pvs/bake/file/flatten.h"
 #include "src/pvs/bake/file/packed_bytes.h"
 #include "src/pvs/bake/file/part_code.h"
