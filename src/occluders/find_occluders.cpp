@@ -8,7 +8,6 @@
 
 #include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
-#include "src/base/memory_reuse.h"
 #include "src/base/part_store.h"
 #include "src/base/parts.h"
 #include "src/base/scratch_array.h"
@@ -220,7 +219,6 @@ std::uint32_t clampedVertices(std::uint32_t max_vertices) {
 
 OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings,
                           const ParallelFor& parallel_for) {
-  const base::MemoryReuse reuse;
   const std::uint32_t max_vertices = clampedVertices(settings.max_vertices);
   const std::vector<std::uint32_t> first_of_part = partsOf(scene.objects);
   base::PartStore memory;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
-#include "src/base/memory_reuse.h"
 #include "src/base/parallel_rows.h"
 #include "src/base/scratch_array.h"
 #include "src/occluders/surfaces/surface_chains.h"
@@ -151,7 +150,6 @@ void listByObject(const occluders::SurfaceMesh& mesh, std::span<const std::uint3
 
 SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
-  const base::MemoryReuse reuse;
   SurfaceSet set;
   occluders::SurfaceMesh mesh = occluders::weld(scene, parallel_for);
   occluders::connect(mesh, settings.join_edges, parallel_for);
