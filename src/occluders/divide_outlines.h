@@ -13,7 +13,8 @@ namespace sightline::occluders {
 // Polygons with divided outlines.
 struct DividedOutlines {
   std::deque<FoundPolygon> polygons;
-  IdStore ids;  // theirs
+  base::PartStore memory;
+  IdStore ids{memory};  // theirs
 };
 
 // Mesh edges of outlines that run one way more often than the other are divided at the vertices of such edges
