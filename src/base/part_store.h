@@ -25,22 +25,18 @@ struct KeptItems {
 // last items in it, so that what is put together part by part needs hardly more memory than once.
 class PartStore {
  public:
-  // Room for so many items, which have no value yet and need this no longer. Several threads may call this.
-  template <typename T>
-  KeptItems<T> room(std::size_t count) {
-    static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kAlignment);
-    const KeptItems<std::byte> taken = take(count * sizeof(T));
-    return {{reinterpret_cast<T*>(taken.items.data()), count}, taken.memory};
-  }
-  // A copy of the items, likewise.
+  // A copy of the items, which needs this no longer. Several threads may call this.
   template <typename T>
   KeptItems<T> keep(const std::vector<T>& items) {
+    static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kAlignment);
     if (items.empty()) {
       return {};
     }
-    KeptItems<T> kept = room<T>(items.size());
-    std::memcpy(static_cast<void*>(kept.items.data()), items.data(), items.size() * sizeof(T));
-    return kept;
+    const std::size_t bytes = items.size() * sizeof(T);
+    const KeptItems<std::byte> taken = take(bytes);
+    T* const kept = reinterpret_cast<T*>(taken.items.data());
+    std::memcpy(static_cast<void*>(kept), items.data(), bytes);
+    return {{kept, items.size()}, taken.memory};
   }
 
  private:

@@ -111,15 +111,12 @@ DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const Mesh
 }
 
 // An edge of a polygon that has too many mesh edges joins nothing at all, so those of such an edge are left
-// whole, for all polygons. Returns the places of the polygons that have divided edges, left whole or not.
-std::vector<std::uint32_t> leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& edges) {
+// whole, for all polygons.
+void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& edges) {
   std::vector<bool> left_whole(edges.count());
-  std::vector<std::uint32_t> changed;
   std::vector<std::size_t> along;  // divided edges of a polygon's edge
-  for (std::uint32_t place = 0; place < polygons.size(); ++place) {
-    const FoundPolygon& polygon = *polygons[place].polygon;
-    const std::span<const std::uint32_t> loop = polygon.loop(), corners = polygon.corners();
-    bool divided = false;
+  for (const RankedPolygon& ranked : polygons) {
+    const std::span<const std::uint32_t> loop = ranked.polygon->loop(), corners = ranked.polygon->corners();
     for (std::size_t c = 0; c < corners.size(); ++c) {
       std::size_t pieces = 0;
       along.clear();
@@ -132,17 +129,12 @@ std::vector<std::uint32_t> leaveLongEdgesWhole(std::span<const RankedPolygon> po
         }
         i = i + 1 < loop.size() ? i + 1 : 0;
       }
-      divided = divided || !along.empty();
       for (std::size_t k = 0; k < along.size() && pieces > kMaxMeshEdges; ++k) {
         left_whole[along[k]] = true;
       }
     }
-    if (divided) {
-      changed.push_back(place);
-    }
   }
   edges.left_whole = std::move(left_whole);
-  return changed;
 }
 
 }  // namespace
@@ -154,9 +146,9 @@ void divideOutlines(std::span<const Vec3f> positions, const ParallelFor& paralle
   if (edges.count() == 0) {
     return;
   }
+  leaveLongEdgesWhole(polygons, edges);
   std::vector<std::uint32_t> loop, corners, place;  // place: in the new loop, by place in the old one
-  for (const std::uint32_t number : leaveLongEdgesWhole(polygons, edges)) {
-    RankedPolygon& ranked = polygons[number];
+  for (RankedPolygon& ranked : polygons) {
     const FoundPolygon& polygon = *ranked.polygon;
     loop.clear();
     place.clear();

@@ -13,8 +13,7 @@ namespace sightline::occluders {
 // Polygons with divided outlines.
 struct DividedOutlines {
   std::deque<FoundPolygon> polygons;
-  base::PartStore memory;
-  IdStore ids{memory};  // theirs
+  IdStore ids;  // theirs
 };
 
 // Mesh edges of outlines that run one way more often than the other are divided at the vertices of such edges

@@ -8,7 +8,6 @@
 
 #include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
-#include "src/base/part_store.h"
 #include "src/base/parts.h"
 #include "src/base/scratch_array.h"
 #include "src/base/sort_keys.h"
@@ -28,56 +27,50 @@ constexpr std::size_t kTrianglesOfPart = 8192;
 
 // What was found in some objects.
 struct PartResult {
-  explicit PartResult(base::PartStore& memory) : ids(memory) {}
-
-  base::KeptItems<FoundPolygon> polygons;   // by object
+  std::vector<FoundPolygon> polygons;       // by object
   std::vector<std::uint32_t> polygon_ends;  // by object
   occluders::IdStore ids;                   // of the polygons
   OccluderReport report;
 };
 
-// Finds polygons in one part after the other.
+// Finds polygons in one object after the other.
 class ObjectSearch {
  public:
-  ObjectSearch(const SceneView& scene, std::uint32_t max_vertices)
-      : scene_(scene), merger_(scene.positions, max_vertices), bodies_(scene.positions) {}
+  ObjectSearch(const SceneView& scene, std::uint32_t max_vertices, PartResult& result)
+      : scene_(scene), result_(result), merger_(scene.positions, max_vertices), bodies_(scene.positions) {}
 
-  void search(std::span<const Object> objects, base::PartStore& memory, PartResult& result) {
-    polygons_.clear();
-    for (const Object& object : objects) {
-      const std::size_t first = polygons_.size();
-      component_of_.clear();
-      searchTriangles(object, result);
-      result.polygon_ends.push_back(static_cast<std::uint32_t>(polygons_.size()));
-      findBodies(std::span(polygons_).subspan(first));
-    }
-    result.polygons = memory.keep(polygons_);
+  void search(const Object& object) {
+    const std::size_t first = result_.polygons.size();
+    component_of_.clear();
+    searchTriangles(object);
+    result_.polygon_ends.push_back(static_cast<std::uint32_t>(result_.polygons.size()));
+    findBodies(std::span(result_.polygons).subspan(first));
   }
 
  private:
-  void searchTriangles(const Object& object, PartResult& result) {
+  void searchTriangles(const Object& object) {
     const Material& material = scene_.materialOf(object);
     const double largest = maxComponent(max(abs(Vec3d(object.bounds.min)), abs(Vec3d(object.bounds.max))));
     if (!material.opaque()) {
-      result.report.see_through += object.triangleCount();
+      result_.report.see_through += object.triangleCount();
     } else if (object.mark == OccluderMark::kNever) {
-      result.report.marked_never += object.triangleCount();
+      result_.report.marked_never += object.triangleCount();
     } else if (!std::isfinite(largest)) {
-      result.report.degenerate += object.triangleCount();
+      result_.report.degenerate += object.triangleCount();
     } else {
       tolerance_ = occluders::roundingTolerance(largest);
       std::uint64_t in_polygons = 0;
       patches_.find(scene_.positions, scene_.indicesOf(object), material.double_sided, tolerance_);
       for (const occluders::Patch& patch : patches_.patches()) {
-        const std::size_t first = polygons_.size();
-        merger_.merge(patch, patches_.trianglesOf(patch), tolerance_, polygons_, result.ids);
-        for (FoundPolygon& polygon : std::span(polygons_).subspan(first)) {
+        const std::size_t first = result_.polygons.size();
+        merger_.merge(patch, patches_.trianglesOf(patch), tolerance_, result_.polygons, result_.ids);
+        for (FoundPolygon& polygon : std::span(result_.polygons).subspan(first)) {
           component_of_.push_back(patch.component);
           polygon.double_sided = material.double_sided;
           in_polygons += polygon.triangle_count;
         }
       }
-      result.report.degenerate += object.triangleCount() - in_polygons;
+      result_.report.degenerate += object.triangleCount() - in_polygons;
     }
   }
 
@@ -102,7 +95,7 @@ class ObjectSearch {
   }
 
   const SceneView& scene_;
-  std::vector<FoundPolygon> polygons_;  // of the part
+  PartResult& result_;
   occluders::PatchFinder patches_;
   occluders::PolygonMerger merger_;
   occluders::BodyFinder bodies_;
@@ -143,9 +136,9 @@ struct AllPolygons {
 
 AllPolygons listAll(std::span<PartResult> parts) {
   AllPolygons all;
-  const std::size_t count = std::accumulate(
-      parts.begin(), parts.end(), std::size_t{0},
-      [](std::size_t sum, const PartResult& part) { return sum + part.polygons.items.size(); });
+  const std::size_t count =
+      std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                      [](std::size_t sum, const PartResult& part) { return sum + part.polygons.size(); });
   all.polygons.reserve(count);
   all.body_of.reserve(count);
   std::uint32_t object = 0;
@@ -153,7 +146,7 @@ AllPolygons listAll(std::span<PartResult> parts) {
     std::uint32_t first = 0;
     for (const std::uint32_t end : part.polygon_ends) {
       const std::uint32_t first_body = all.body_count;
-      for (const FoundPolygon& polygon : part.polygons.items.subspan(first, end - first)) {
+      for (const FoundPolygon& polygon : std::span(part.polygons).subspan(first, end - first)) {
         const bool in_body = polygon.body != FoundPolygon::kNoBody;
         all.polygons.push_back({&polygon, ObjectId(object), OccluderId()});
         all.body_of.push_back(in_body ? first_body + polygon.body : FoundPolygon::kNoBody);
@@ -221,13 +214,16 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
                           const ParallelFor& parallel_for) {
   const std::uint32_t max_vertices = clampedVertices(settings.max_vertices);
   const std::vector<std::uint32_t> first_of_part = partsOf(scene.objects);
-  base::PartStore memory;
-  std::vector<PartResult> parts(first_of_part.size() - 1, PartResult(memory));
-  parallel_for(static_cast<std::uint32_t>(parts.size()), [&](std::uint32_t begin, std::uint32_t end) {
-    ObjectSearch search(scene, max_vertices);
-    for (std::uint32_t part = begin; part < end; ++part) {
-      search.search(scene.objects.subspan(first_of_part[part], first_of_part[part + 1] - first_of_part[part]),
-                    memory, parts[part]);
+  std::vector<PartResult> parts(first_of_part.size() - 1);
+  base::forEach(parallel_for, parts.size(), [&](std::uint32_t part) {
+    std::size_t triangles = 0;
+    for (std::uint32_t o = first_of_part[part]; o < first_of_part[part + 1]; ++o) {
+      triangles += scene.objects[o].triangleCount();
+    }
+    parts[part].polygons.reserve(std::min(triangles, 2 * kTrianglesOfPart));
+    ObjectSearch search(scene, max_vertices, parts[part]);
+    for (std::uint32_t o = first_of_part[part]; o < first_of_part[part + 1]; ++o) {
+      search.search(scene.objects[o]);
     }
   });
   OccluderSet set;
@@ -259,8 +255,7 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
   weldPositions(corners);
 
   OccluderSet set;
-  base::PartStore memory;
-  occluders::IdStore ids(memory);
+  occluders::IdStore ids;
   occluders::PolygonFinisher finisher(corners.positions, 64);
   std::vector<FoundPolygon> all;
   std::vector<ObjectId> object_of;  // by polygon

@@ -1,18 +1,17 @@
 #pragma once
 
-// Writes found polygons into an occluder set and links those that share edges of the mesh.
+// Links the occluders of a set that share edges of the mesh.
 
+#include <cstdint>
 #include <span>
 
-#include "sightline/base/parallel_for.h"
-#include "sightline/occluders/occluder_set.h"
 #include "src/occluders/assemble_set.h"
 
 namespace sightline::occluders {
 
-// Fills occluders, vertices, edges, lines, neighbours and the area of a set from its polygons. polygons: see
-// assembleSet().
-void linkPolygons(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
-                  const ParallelFor& parallel_for, OccluderSet& set);
+// Fills edges, lines and neighbours of a set with occluders and vertices, and adds to the slack of occluders.
+// first_vertex: in the set, by place among the given polygons.
+void linkEdges(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+               LargeVector<std::uint32_t> first_vertex, const ParallelFor& parallel_for, OccluderSet& set);
 
 }  // namespace sightline::occluders

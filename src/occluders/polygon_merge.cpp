@@ -31,14 +31,13 @@ std::span<const std::uint32_t> IdStore::copy(std::span<const std::uint32_t> loop
                                              std::span<const std::uint32_t> corners) {
   constexpr std::size_t kBlock = 16384;
   const std::size_t size = loop.size() + corners.size();
-  if (free_.size() < size) {
-    blocks_.push_back(memory_->room<std::uint32_t>(std::max(kBlock, size)));
-    free_ = blocks_.back().items;
+  if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < size) {
+    blocks_.emplace_back().reserve(std::max(kBlock, size));
   }
-  const std::span<std::uint32_t> ids = free_.first(size);
-  std::copy(corners.begin(), corners.end(), std::copy(loop.begin(), loop.end(), ids.begin()));
-  free_ = free_.subspan(size);
-  return ids;
+  std::vector<std::uint32_t>& block = blocks_.back();
+  block.insert(block.end(), loop.begin(), loop.end());
+  block.insert(block.end(), corners.begin(), corners.end());
+  return std::span(block).last(size);
 }
 
 FoundPolygon foundPolygon(const GrowingPolygon& polygon, const Plane& plane, IdStore& ids) {

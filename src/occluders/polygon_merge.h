@@ -11,7 +11,6 @@
 #include "sightline/base/large_vector.h"
 #include "sightline/math/plane.h"
 #include "sightline/math/vec3.h"
-#include "src/base/part_store.h"
 #include "src/base/sort_keys.h"
 #include "src/base/union_find.h"
 
@@ -52,16 +51,12 @@ class FoundPolygon {
 // Holds the outlines of found polygons. They stay where they are, also when this is moved.
 class IdStore {
  public:
-  // The memory is that of a store that several of these share.
-  explicit IdStore(base::PartStore& memory) : memory_(&memory) {}
   // Returns a copy of the ids of a loop and of its corners, one after the other.
   std::span<const std::uint32_t> copy(std::span<const std::uint32_t> loop,
                                       std::span<const std::uint32_t> corners);
 
  private:
-  base::PartStore* memory_;
-  std::vector<base::KeptItems<std::uint32_t>> blocks_;
-  std::span<std::uint32_t> free_;  // of the last block
+  std::vector<std::vector<std::uint32_t>> blocks_;
 };
 
 // Places count as equal when they differ by no more than this: eight units in the last place of
