@@ -2,6 +2,8 @@
 // bytes are tried as they are, and as the parts of a file that is cut off somewhere.
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "fuzz/readers/fuzz_input.h"
@@ -14,26 +16,45 @@ namespace {
 
 constexpr std::uint64_t kPlan = 0x0123456789abcdef;
 
-Result<tool::KeptParts> resumed(const std::string& file) {
+// What a checkpoint has, with the bytes of its parts.
+struct Resumed {
+  tool::KeptParts kept;
+  BakedParts parts;
+};
+
+Result<Resumed> resumed(const std::string& file) {
   Result<tool::Checkpoint> checkpoint = tool::Checkpoint::open(file, tool::CheckpointUse::kResume);
-  return checkpoint ? checkpoint->begin(kPlan) : Result<tool::KeptParts>(checkpoint.error());
+  if (!checkpoint) {
+    return checkpoint.error();
+  }
+  const Result<tool::KeptParts> kept = checkpoint->begin(kPlan);
+  if (!kept) {
+    return kept.error();
+  }
+  Resumed found{*kept, {}};
+  for (const std::uint64_t part : kept->parts) {
+    std::optional<BakedPart> bytes = checkpoint->read(part);
+    require(bytes.has_value());
+    found.parts.emplace(part, std::move(*bytes));
+  }
+  return found;
 }
 
 void readAsItIs(std::string_view bytes) {
   const std::string file = folder().write("fuzz.parts", bytes);
-  const Result<tool::KeptParts> kept = resumed(file);
-  if (!kept) {
-    requireOneLine(kept.error());
+  const Result<Resumed> found = resumed(file);
+  if (!found) {
+    requireOneLine(found.error());
     return;
   }
   std::size_t size = 0;
-  for (const auto& [part, record] : kept->parts) {
+  for (const auto& [part, record] : found->parts) {
     size += record.size();
   }
   require(size <= bytes.size());
   // The file was mended.
-  const Result<tool::KeptParts> again = resumed(file);
-  require(again && again->parts == kept->parts && tool::lossText(file, *again).empty());
+  const Result<Resumed> again = resumed(file);
+  require(again && again->parts == found->parts && tool::lossText(file, again->kept).empty());
 }
 
 // What was appended and not cut off comes back.
@@ -55,9 +76,9 @@ void readWhatWasWritten(std::string_view text) {
   }
   const auto whole = std::filesystem::file_size(file);
   std::filesystem::resize_file(file, whole - std::min<std::uintmax_t>(cut, whole));
-  const Result<tool::KeptParts> kept = resumed(file);
-  require(kept && !kept->damaged && (cut > 0 || kept->parts.size() == written.size()));
-  for (const auto& [part, record] : kept->parts) {
+  const Result<Resumed> found = resumed(file);
+  require(found && !found->kept.damaged && (cut > 0 || found->parts.size() == written.size()));
+  for (const auto& [part, record] : found->parts) {
     require(part < written.size() && record == written[part]);
   }
 }

@@ -2,8 +2,10 @@
 // read twice.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -148,10 +150,56 @@ TEST_F(WrittenParts, GiveTheWitnessesAndAnswersOfThoseInMemory) {
     ASSERT_TRUE(bake);
     const BakedParts parts = bake->bakeAll();
     const ReadPart read = [&](std::uint64_t id) { return std::optional(parts.at(id)); };
-    EXPECT_EQ(witnessBytes(bake->witnesses(read)), witnessBytes(bake->witnesses(parts)));
-    EXPECT_EQ(witnesses, !bake->witnesses(read).all.empty());
-    EXPECT_EQ(bake->answers(read), bake->answers(parts));
+    const Result<Witnesses> found = bake->witnesses(read);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(witnessBytes(*found), witnessBytes(bake->witnesses(parts)));
+    EXPECT_EQ(witnesses, !found->all.empty());
+    const Result<std::vector<std::byte>> answers = bake->answers(read);
+    ASSERT_TRUE(answers);
+    EXPECT_EQ(*answers, bake->answers(parts));
+    // Where one part is missing there are none at all.
+    for (const std::uint64_t lost : {parts.begin()->first, parts.rbegin()->first}) {
+      const ReadPart others = [&](std::uint64_t id) {
+        return id == lost ? std::nullopt : std::optional(parts.at(id));
+      };
+      EXPECT_FALSE(bake->witnesses(others)) << lost;
+      EXPECT_FALSE(bake->answers(others)) << lost;
+    }
   }
+}
+
+// Limits on file sizes simulate a disk that is full: at the first set, somewhere in the payload, and while
+// the payload is moved behind the structure.
+TEST_F(WrittenParts, LeaveTheOldFileWhereTheDiskIsFullAndAreReadNoFurther) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 0});
+  const Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene),
+                                       {.triangle_budget = 300, .max_depth = 4, .near_distance = 0.05});
+  ASSERT_TRUE(bake);
+  const BakedParts parts = bake->bakeAll();
+  std::size_t reads = 0;
+  const ReadPart read = [&](std::uint64_t id) {
+    reads += 1;
+    return std::optional(parts.at(id));
+  };
+  ASSERT_EQ(sight_test::errorOf(bake->writeSight(file_, read)), "");
+  const auto before = content();
+  ASSERT_EQ(reads, parts.size());
+
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const std::size_t room : {std::size_t{0}, std::size_t{1000}, before.size() - 1}) {
+    const rlimit small{room, limit.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    reads = 0;
+    const std::string error = sight_test::errorOf(bake->writeSight(file_, read));
+    setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_NE(error.find("File too large"), std::string::npos) << error;
+    EXPECT_EQ(reads == parts.size(), room == before.size() - 1) << room;
+    EXPECT_TRUE(content() == before);
+    EXPECT_EQ(filesThere(), 1u);
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace

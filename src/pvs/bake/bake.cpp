@@ -495,25 +495,25 @@ ReadCell cellReader(const Bake& bake, const BakeScene& scene, const ReadPart& re
   };
 }
 
-// Calls visit(id, content) for all parts, by ascending id. Parts that cannot be read, and those below them,
-// are left out.
+// Calls visit(id, content) for all parts, by ascending id, up to the first that cannot be read or for which
+// visit is false: that one's id is returned, else 0.
 template <typename Visit>
-void forEachPart(const BakeScene& scene, const ReadPart& read, std::uint64_t root, Visit&& visit) {
+std::uint64_t forEachPart(const BakeScene& scene, const ReadPart& read, std::uint64_t root, Visit&& visit) {
   for (std::vector<std::uint64_t> level{root}; !level.empty();) {
     std::vector<std::uint64_t> next;
     for (const std::uint64_t id : level) {
       const std::optional<BakedPart> part = read(id);
       const std::optional<PartContent> content = part ? contentOf(scene.settings, *part) : std::nullopt;
-      if (!content) {
-        continue;
+      if (!content || !visit(id, *content)) {
+        return id;
       }
-      visit(id, *content);
       for (std::uint64_t i = 0; i < 8 && content->head.divided(); ++i) {
         next.push_back(8 * id + i);
       }
     }
     level = std::move(next);
   }
+  return 0;
 }
 
 }  // namespace
@@ -526,7 +526,7 @@ Result<BakedVisibility> Bake::assemble(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   std::uint64_t broken = 0;
   const std::optional<BakedCell> top =
-      pvs::cellsBelow(scene, cellReader(*this, scene, read), firstPart().id, broken);
+      cellOfParts(scene, cellReader(*this, scene, read), firstPart().id, broken);
   if (!top) {
     return brokenPart(broken);
   }
@@ -563,31 +563,44 @@ Status Bake::writeSight(const std::string& file, const ReadPart& read, const Sig
 }
 
 Witnesses Bake::witnesses(const BakedParts& parts) const {
-  return witnesses(readerOf(parts));
+  Result<Witnesses> found = witnesses(readerOf(parts));
+  return found ? std::move(*found) : Witnesses{};
 }
 
-Witnesses Bake::witnesses(const ReadPart& read) const {
+Result<Witnesses> Bake::witnesses(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
-  forEachPart(scene, read, firstPart().id, [&](std::uint64_t, const PartContent& content) {
-    if (std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content)) {
-      found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
-                       std::make_move_iterator(own->end()));
-    }
-  });
+  const std::uint64_t broken =
+      forEachPart(scene, read, firstPart().id, [&](std::uint64_t, const PartContent& content) {
+        std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content);
+        if (own) {
+          found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
+                           std::make_move_iterator(own->end()));
+        }
+        return own.has_value();
+      });
+  if (broken != 0) {
+    return brokenPart(broken);
+  }
   return found;
 }
 
 std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
-  return answers(readerOf(parts));
+  Result<std::vector<std::byte>> bytes = answers(readerOf(parts));
+  return bytes ? std::move(*bytes) : std::vector<std::byte>();
 }
 
-std::vector<std::byte> Bake::answers(const ReadPart& read) const {
+Result<std::vector<std::byte>> Bake::answers(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   std::map<std::uint64_t, std::vector<std::byte>> kept;
-  forEachPart(scene, read, firstPart().id, [&](std::uint64_t id, const PartContent& content) {
-    kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
-  });
+  const std::uint64_t broken =
+      forEachPart(scene, read, firstPart().id, [&](std::uint64_t id, const PartContent& content) {
+        kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
+        return true;
+      });
+  if (broken != 0) {
+    return brokenPart(broken);
+  }
   const std::map<std::uint64_t, std::span<const std::byte>> answers(kept.begin(), kept.end());
   return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
 }

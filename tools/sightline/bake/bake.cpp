@@ -220,18 +220,23 @@ Result<Planned> planBake(const BakeOptions& options) {
                  load_us,           watch.lap(),    std::move(viewpoints), std::move(update)};
 }
 
-// Writes the files that belong beside the baked one, which is written: so all parts are there.
+// Writes the files that belong beside the baked one.
 Status writeCompanions(const BakeOptions& options, const Bake& bake, const ReadPart& parts) {
   const auto save = [](const std::string& file, const std::vector<std::byte>& bytes) {
     return saveFile(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   };
   if (!options.witnesses.empty()) {
-    if (const Status ok = save(options.witnesses, witnessBytes(bake.witnesses(parts))); !ok) {
+    const Result<Witnesses> witnesses = bake.witnesses(parts);
+    if (!witnesses) {
+      return witnesses.error();
+    }
+    if (const Status ok = save(options.witnesses, witnessBytes(*witnesses)); !ok) {
       return ok;
     }
   }
   if (const std::string file = options.answersFile(); !file.empty()) {
-    return save(file, bake.answers(parts));
+    const Result<std::vector<std::byte>> answers = bake.answers(parts);
+    return answers ? save(file, *answers) : Status(answers.error());
   }
   return Success{};
 }

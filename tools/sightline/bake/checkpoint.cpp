@@ -85,14 +85,14 @@ bool readAt(int descriptor, std::uint64_t offset, void* bytes, std::size_t count
   return true;
 }
 
-// The first mark of a record in [begin, end) of the file, or end.
-std::uint64_t findMark(int descriptor, std::uint64_t begin, std::uint64_t end) {
+// The first mark of a record in [begin, end) of the file, or end. Nothing if the file cannot be read.
+std::optional<std::uint64_t> findMark(int descriptor, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kStep = 1u << 20;
   std::string step;
   for (std::uint64_t at = begin; at < end; at += kStep) {
     step.resize(static_cast<std::size_t>(std::min(end - at, kStep + kMark.size() - 1)));
     if (!readAt(descriptor, at, step.data(), step.size())) {
-      return end;
+      return std::nullopt;
     }
     if (const std::size_t found = step.find(kMark); found != std::string::npos) {
       return at + found;
@@ -227,7 +227,11 @@ Result<std::uint64_t> Checkpoint::gather(std::uint64_t size, KeptParts& kept) {
           left < sizeof(RecordHead) && text.substr(0, kMark.size()) == kMark.substr(0, text.size());
       kept.unreadable += 1;
       kept.damaged |= !cut;
-      at = findMark(descriptor_, at + 1, size);
+      const std::optional<std::uint64_t> mark = findMark(descriptor_, at + 1, size);
+      if (!mark) {
+        return failure("cannot be read");
+      }
+      at = *mark;
       continue;
     }
     if (head->length > left - sizeof(*head)) {
@@ -255,6 +259,10 @@ Result<std::uint64_t> Checkpoint::gather(std::uint64_t size, KeptParts& kept) {
       end += record;
     }
     at += record;
+  }
+  // What was moved must be on the disk before what lies behind it is cut off.
+  if (end < size && ::fdatasync(descriptor_) != 0) {
+    return failure("cannot be written");
   }
   return end;
 }

@@ -212,19 +212,19 @@ class Bake {
   // missing or its bytes are not of this plan, or if no cells are few enough for the byte budget.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
   Result<BakedVisibility> assemble(const ReadPart& read) const;
-  // Assembles and writes the file as writeSight() does, with the same bytes, but has no more than a part and
-  // the octree without its sets in memory. Each part is read once. Not so with a byte budget, for which all
-  // sets are in memory. Payload that is not in its place yet is in a nameless file beside the target.
+  // Assembles and writes the file, with the bytes that sightline::writeSight() gives it, but has no more than
+  // a part and the octree without its sets in memory; with a byte budget, all sets are. Each part is read
+  // once. Payload that is not in its place yet is in a nameless file beside the target.
   Status writeSight(const std::string& file, const ReadPart& read, const SightExtras& extras = {}) const;
   // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
   // as for assemble(), which must have succeeded with them.
   Witnesses witnesses(const BakedParts& parts) const;
-  Witnesses witnesses(const ReadPart& read) const;
+  Result<Witnesses> witnesses(const ReadPart& read) const;  // an error if a part cannot be read
   // The answers to all that was asked, as bytes of a file, if BakeSettings::answers is set: for takeOver() of
   // a bake of the scene after a change. Parts as for assemble(), which must have succeeded with them.
   std::vector<std::byte> answers(const BakedParts& parts) const;
-  std::vector<std::byte> answers(const ReadPart& read) const;
+  Result<std::vector<std::byte>> answers(const ReadPart& read) const;  // likewise
   // True if the bytes, eight at least, begin as those of answers() do.
   static bool beginsAsAnswers(std::span<const std::byte> bytes);
 

@@ -44,8 +44,8 @@ class SightFile {
   // Decodes a set and appends its nodes. set < setCount(). Returns an error if the chunk is corrupt. SetQuery
   // is faster for many look-ups.
   Status readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const;
-  // Calls visit(set, nodes) for all sets in ascending order, decoding each chunk once. Stops at the first
-  // corrupt chunk.
+  // Calls visit(set, nodes) for all sets in ascending order, decoding each chunk once, and gives back
+  // the memory of a mapped file behind it. Stops at the first corrupt chunk.
   Status forEachSet(const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const;
   // Decodes all chunks, as a check.
   Status verifyAll() const;

@@ -1,6 +1,7 @@
 #include "src/pvs/bake/file/assemble_parts.h"
 
 #include <utility>
+#include <vector>
 
 namespace sightline::pvs {
 namespace {
@@ -103,8 +104,8 @@ class PartFlattener {
 
 }  // namespace
 
-std::optional<BakedCell> cellsBelow(const BakeScene& scene, const ReadCell& read, std::uint64_t id,
-                                    std::uint64_t& broken) {
+std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t id,
+                                     std::uint64_t& broken) {
   std::optional<PartCell> part = read(id);
   broken = id;
   if (!part) {
@@ -116,7 +117,7 @@ std::optional<BakedCell> cellsBelow(const BakeScene& scene, const ReadCell& read
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(cellOfNumber(id).level);
   for (std::uint64_t i = 0; i < 8; ++i) {
-    std::optional<BakedCell> child = cellsBelow(scene, read, 8 * id + i, broken);
+    std::optional<BakedCell> child = cellOfParts(scene, read, 8 * id + i, broken);
     if (!child) {
       return std::nullopt;
     }

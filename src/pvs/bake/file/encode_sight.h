@@ -3,6 +3,7 @@
 // Encodes baked data as the bytes of a .sight file.
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "sightline/base/result.h"

@@ -10,19 +10,9 @@
 
 #include "sightline/pvs/format/baked_visibility.h"
 #include "src/pvs/bake/cell_tree.h"
+#include "src/pvs/bake/file/set_store.h"
 
 namespace sightline::pvs {
-
-// Takes sets of nodes, and numbers them in the order in which they come.
-class SetStore {
- public:
-  virtual ~SetStore() = default;
-  virtual std::uint32_t count() const = 0;
-  // Whether a set that was added has exactly these nodes. False also if that cannot be told any more: then
-  // the set is there twice.
-  virtual bool same(std::uint32_t set, std::span<const std::uint32_t> nodes) = 0;
-  virtual void add(std::span<const std::uint32_t> nodes) = 0;
-};
 
 // Finds keys by their hashes. A key is a number, given to it in the order in which keys are added.
 class HashIndex {
@@ -45,8 +35,8 @@ class Flattener {
   // octree and doors must be empty, except for the octree's box, and outlive this object.
   Flattener(const BakeScene& scene, VisibilityOctree& octree, BakedDoors& doors, SetStore& sets);
 
-  // The root's node is number 0 and exists from the beginning.
-  // Writes the cell with all below it to a node that exists.
+  // Writes the cell with all below it to a node that exists. That of the root, number 0, exists from the
+  // beginning.
   void add(const BakedCell& cell, std::uint32_t node);
   // Makes the node one with eight children, and returns the first of them.
   std::uint32_t divide(std::uint32_t node);
@@ -68,7 +58,7 @@ class Flattener {
   std::vector<DoorSet> hidden_;
 };
 
-// All of this for cells that are in memory.
+// Converts cells that are in memory, with their sets.
 void flatten(const BakedCell& root, const BakeScene& scene, BakedVisibility& baked);
 
 }  // namespace sightline::pvs

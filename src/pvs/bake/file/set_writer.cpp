@@ -75,7 +75,10 @@ bool SetWriter::same(std::uint32_t set, std::span<const std::uint32_t> nodes) {
 }
 
 void SetWriter::add(std::span<const std::uint32_t> nodes) {
-  sound_ = sound_ && soundSet(nodes, tree_);
+  if (!soundSet(nodes, tree_)) {
+    sound_ = false;
+    nodes = {};
+  }
   set_bytes_.clear();
   appendSet(set_bytes_, nodes, tree_);
   if (raw_.size() + set_bytes_.size() > raw_limit_) {

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "src/pvs/bake/file/flatten.h"
+#include "sightline/hierarchy/box_tree.h"
+#include "src/pvs/bake/file/set_store.h"
 #include "src/pvs/format/sight_view.h"
 
 struct ZSTD_CCtx_s;
@@ -64,8 +64,9 @@ class SetWriter final : public SetStore {
   std::uint32_t count() const override { return static_cast<std::uint32_t>(encoded_.sets.size()); }
   bool same(std::uint32_t set, std::span<const std::uint32_t> nodes) override;
   void add(std::span<const std::uint32_t> nodes) override;
-  void finish();                         // writes the last chunk; no more sets may be added
-  bool sound() const { return sound_; }  // whether each set was a soundSet of the tree
+  void finish();  // writes the last chunk; no more sets may be added
+  // Whether each set was a soundSet of the tree. Others are written as empty ones.
+  bool sound() const { return sound_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,7 +62,15 @@ Status writeParts(const std::string& file, const BakeScene& scene, const ReadCel
   EncodedChunks encoded;
   SetWriter sets(baked.boxes.nodes, payload, encoded);
   Flattener flattener(scene, baked.octree, baked.doors, sets);
-  broken = flattenParts(scene, read, root, flattener);
+  // Once the payload cannot be kept, no more parts need be read.
+  const ReadCell read_while_kept = [&](std::uint64_t id) {
+    return payload.status() ? read(id) : std::optional<PartCell>();
+  };
+  broken = flattenParts(scene, read_while_kept, root, flattener);
+  if (const Status kept = payload.status(); !kept) {
+    broken = 0;
+    return kept;
+  }
   if (broken != 0) {
     return Error{"a part cannot be read"};
   }
