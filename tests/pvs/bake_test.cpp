@@ -435,6 +435,7 @@ TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
     std::uint32_t leaves = 0;
     for (const auto& [id, part] : bake->bakeAll()) {
       EXPECT_TRUE(bake->isPart(id, part));
+      EXPECT_FALSE(bake->isPart(id, std::span(part).first(part.size() - 1)));
       EXPECT_LE(bake->summaryOf(part).leaves, 64u) << depth;
       leaves += bake->summaryOf(part).leaves;
       share += bake->summaryOf(part).share;

@@ -394,10 +394,13 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
 }
 
 bool Bake::isPart(std::uint64_t id, std::span<const std::byte> part) const {
-  base::ByteReader bytes(part);
-  const PartHead head = readHead(bytes);
+  const std::optional<PartContent> content = contentOf(data_->scene.settings, part);
+  if (!content) {
+    return false;
+  }
   // A part that says that its cell was divided must be of one that can be.
-  return bytes.ok() && head.magic == kPartMagic && head.plan == data_->hash && head.id == id &&
+  const PartHead& head = content->head;
+  return head.magic == kPartMagic && head.plan == data_->hash && head.id == id &&
          (head.summary.leaves > 0 || data_->scene.mayDivide(cellOfNumber(id)));
 }
 

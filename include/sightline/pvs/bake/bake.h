@@ -186,7 +186,7 @@ class Bake {
   // The parts that a baked part was divided into: eight or none.
   std::vector<PartTask> partsBelow(std::span<const std::byte> part) const;
   PartSummary summaryOf(std::span<const std::byte> part) const;
-  // True if these bytes claim to be this part of this plan.
+  // True if these bytes claim to be this part of this plan, and have all blocks of one.
   bool isPart(std::uint64_t id, std::span<const std::byte> part) const;
 
   // Bakes parts one after the other and keeps the samples they share. For use by one thread at a time.
