@@ -485,15 +485,15 @@ ReadCell cellReader(const Bake& bake, const BakeScene& scene, const ReadPart& re
     if (!part || !bake.isPart(id, *part)) {
       return std::nullopt;
     }
-    const std::optional<PartContent> content = contentOf(scene.settings, *part);
-    if (!content || !witnessesOf(scene.settings, *content)) {
+    const PartContent content = *contentOf(scene.settings, *part);  // which a part has
+    if (!witnessesOf(scene.settings, content)) {
       return std::nullopt;
     }
     PartCell cell;
-    if (content->head.divided()) {
-      return soundlyDivided(scene, *content) ? std::optional(std::move(cell)) : std::nullopt;
+    if (content.head.divided()) {
+      return soundlyDivided(scene, content) ? std::optional(std::move(cell)) : std::nullopt;
     }
-    cell.cell = cellOf(scene, *content);
+    cell.cell = cellOf(scene, content);
     return cell.cell ? std::optional(std::move(cell)) : std::nullopt;
   };
 }

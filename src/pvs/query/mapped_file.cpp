@@ -80,7 +80,7 @@ Result<MappedFile> MappedFile::open(const std::string& file) {
 void MappedFile::release(std::span<const std::byte> part) const {
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const auto begin = static_cast<std::size_t>(part.data() - begin_);
-  // Of the pages at both ends, other bytes may be in use.
+  // The pages at both ends stay, since they may hold other bytes that are in use.
   const std::size_t first = (begin + page - 1) / page * page, last = (begin + part.size()) / page * page;
   if (first < last) {
     ::madvise(const_cast<std::byte*>(begin_) + first, last - first, MADV_DONTNEED);

@@ -147,8 +147,8 @@ Status SightFile::readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) 
 
 Status SightFile::forEachSet(
     const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const {
-  constexpr std::uint64_t kKept =
-      16u << 20;  // bytes of a mapped payload that have been read and are still in memory
+  // So many bytes of a mapped payload are read before they are given back.
+  constexpr std::uint64_t kKept = 16u << 20;
   const SightView& view = data_->view;
   ChunkDecoder decoder;
   std::vector<std::uint32_t> nodes;

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -272,13 +270,7 @@ Status writeBaked(const BakeOptions& options, const Bake& bake, const SightExtra
   };
   const Status written = bake.writeSight(options.output, read, extras);
   if (!written && toldToEnd() != 0) {
-    const bool kept = checkpoint.flush().has_value();
-    bar.say(
-        fmt::format("interrupted; {0} of the {0} parts known so far are {1}; the same command with --resume "
-                    "goes on",
-                    part_count, kept ? "kept" : "kept, as far as they could be written"));
-    std::fflush(stderr);
-    std::_Exit(interruptedExitCode());
+    endInterrupted(bar, checkpoint, part_count, part_count, "");
   }
   return written;
 }

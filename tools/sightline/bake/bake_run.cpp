@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -16,7 +17,6 @@
 #include <vector>
 
 #include "tools/sightline/bake/part_queue.h"
-#include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 
 namespace sightline::tool {
@@ -309,15 +309,8 @@ class FirstBaker {
   }
 
   [[noreturn]] void endEarly(ProgressBar& bar) {
-    const bool kept = checkpoint_.flush().has_value();
-    bar.say(
-        fmt::format("interrupted; {} of the {} parts known so far are {}, {:.1f} % of the viewers' space; "
-                    "the same command "
-                    "with --resume goes on",
-                    done_, done_ + open_, kept ? "kept" : "kept, as far as they could be written",
-                    100.0 * std::min(share_, 1.0)));
-    std::fflush(stderr);
-    std::_Exit(interruptedExitCode());  // threads are in the middle of parts and cannot be joined
+    endInterrupted(bar, checkpoint_, done_, done_ + open_,
+                   fmt::format(", {:.1f} % of the viewers' space", 100.0 * std::min(share_, 1.0)));
   }
 
   const Bake& bake_;
@@ -365,6 +358,16 @@ Status agree(MpiWorld& world, const Status& own, std::uint64_t number) {
     world.send(other, kGo, MessageWriter().number(all ? 1 : 0).bytes());
   }
   return all;
+}
+
+void endInterrupted(ProgressBar& bar, Checkpoint& checkpoint, std::uint64_t done, std::uint64_t known,
+                    std::string_view share) {
+  const bool kept = checkpoint.flush().has_value();
+  bar.say(fmt::format(
+      "interrupted; {} of the {} parts known so far are {}{}; the same command with --resume goes on", done,
+      known, kept ? "kept" : "kept, as far as they could be written", share));
+  std::fflush(stderr);
+  std::_Exit(interruptedExitCode());  // threads may be in the middle of parts and cannot be joined
 }
 
 Result<std::uint64_t> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/bake/bake.h"
 #include "tools/sightline/bake/checkpoint.h"
 #include "tools/sightline/bake/mpi_world.h"
+#include "tools/sightline/command_line/progress_bar.h"
 
 namespace sightline::tool {
 
@@ -31,6 +33,11 @@ Status agree(MpiWorld& world, const Status& own, std::uint64_t number);
 Result<std::uint64_t> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
                                   Checkpoint& checkpoint, std::span<const std::uint64_t> known,
                                   BakeEffort& effort);
+
+// Says how many of the known parts are done, and which share of the viewers' space they are (", 12 % of ...",
+// or nothing), and ends the process. All that is done is in the checkpoint.
+[[noreturn]] void endInterrupted(ProgressBar& bar, Checkpoint& checkpoint, std::uint64_t done,
+                                 std::uint64_t known, std::string_view share);
 
 // The other processes' part: they bake what the first process gives them until there is no more.
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads);

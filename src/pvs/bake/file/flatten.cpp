@@ -34,21 +34,6 @@ class KeptSets final : public SetStore {
 
 }  // namespace
 
-template <typename Same>
-std::uint32_t HashIndex::findOrAdd(std::uint64_t hash, Same&& same) {
-  if (2 * hashes_.size() >= slots_.size()) {
-    grow();
-  }
-  const std::size_t slot = base::probeSlots(slots_, base::mixBits(hash), [&](std::uint32_t key) {
-    return key == 0 || (hashes_[key - 1] == hash && same(key - 1));
-  });
-  if (slots_[slot] == 0) {
-    hashes_.push_back(hash);
-    slots_[slot] = static_cast<std::uint32_t>(hashes_.size());
-  }
-  return slots_[slot] - 1;
-}
-
 void HashIndex::grow() {
   slots_.assign(2 * slots_.size(), 0);
   for (std::uint32_t key = 0; key < hashes_.size(); ++key) {

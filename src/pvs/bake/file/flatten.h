@@ -3,12 +3,14 @@
 // From cells to the layout of the file.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
 
 #include "sightline/pvs/format/baked_visibility.h"
+#include "src/base/hash_slots.h"
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/file/set_store.h"
 
@@ -19,7 +21,19 @@ class HashIndex {
  public:
   // The key with this hash for which same(key) is true; if there is none, the next number, which is added.
   template <typename Same>
-  std::uint32_t findOrAdd(std::uint64_t hash, Same&& same);
+  std::uint32_t findOrAdd(std::uint64_t hash, Same&& same) {
+    if (2 * hashes_.size() >= slots_.size()) {
+      grow();
+    }
+    const std::size_t slot = base::probeSlots(slots_, base::mixBits(hash), [&](std::uint32_t key) {
+      return key == 0 || (hashes_[key - 1] == hash && same(key - 1));
+    });
+    if (slots_[slot] == 0) {
+      hashes_.push_back(hash);
+      slots_[slot] = static_cast<std::uint32_t>(hashes_.size());
+    }
+    return slots_[slot] - 1;
+  }
 
  private:
   void grow();
