@@ -1,5 +1,8 @@
 # The front door. Everything below needs nothing before it on a fresh Debian 12: missing packages are installed first.
 
+# Where a build lies is not part of what ccache compares, so that presets share what they compile alike: the tests.
+export CCACHE_BASEDIR ?= $(CURDIR)
+
 PRESET ?= release
 JOBS ?= $(shell nproc)
 TIDY ?= src scenes oracle tools

@@ -292,20 +292,20 @@ TEST(BoxTree, CountsOfTrianglesSaturate) {
 
 // What makes trees deep, wide, or slow to build where nothing bounds them.
 TEST(BoxTree, NoInputMakesItDeepOrWide) {
-  constexpr std::size_t kCount = test::rounds(60000);
+  const std::size_t count = test::rounds<std::size_t>(60000);
   Random random(31);
   std::vector<std::pair<const char*, std::vector<Box>>> inputs;
-  inputs.emplace_back("identical", std::vector<Box>(kCount, Box{{1, 1, 1}, {2, 2, 2}}));
-  inputs.emplace_back("points in one place", std::vector<Box>(kCount, Box{{1, 1, 1}, {1, 1, 1}}));
-  inputs.emplace_back("nested", boxesOf(Family::kNested, kCount, random));
-  inputs.emplace_back("scattered", boxesOf(Family::kScattered, kCount, random));
-  inputs.emplace_back("large", boxesOf(Family::kLarge, kCount, random));
+  inputs.emplace_back("identical", std::vector<Box>(count, Box{{1, 1, 1}, {2, 2, 2}}));
+  inputs.emplace_back("points in one place", std::vector<Box>(count, Box{{1, 1, 1}, {1, 1, 1}}));
+  inputs.emplace_back("nested", boxesOf(Family::kNested, count, random));
+  inputs.emplace_back("scattered", boxesOf(Family::kScattered, count, random));
+  inputs.emplace_back("large", boxesOf(Family::kLarge, count, random));
   std::vector<Box> line, doubling, corner;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const double k = static_cast<double>(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double k = static_cast<double>(i), exponent = k * 120.0 / static_cast<double>(count);
     line.push_back(around({k, 0, 0}, {0.4, 0, 0}));
-    doubling.push_back(around(Vec3d(1, 0, 0) * std::exp2(k * 120.0 / kCount), {0.1, 0.1, 0.1}));
-    corner.push_back({{0, 0, 0}, Vec3f(Vec3d(1, 1, 1) * std::exp2(k * 120.0 / kCount))});
+    doubling.push_back(around(Vec3d(1, 0, 0) * std::exp2(exponent), {0.1, 0.1, 0.1}));
+    corner.push_back({{0, 0, 0}, Vec3f(Vec3d(1, 1, 1) * std::exp2(exponent))});
   }
   inputs.emplace_back("line", std::move(line));
   inputs.emplace_back("doubling distances", std::move(doubling));

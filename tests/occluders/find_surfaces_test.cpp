@@ -52,7 +52,7 @@ Scene takenApart(const Scene& scene, std::uint32_t seed) {
 TEST(FindSurfaces, DoNotDependOnHowTheWorkIsCut) {
   std::vector<Scene> scenes;
   scenes.push_back(makeCity({.copies = 3}));
-  if (!test::kSanitized) {  // the work is cut in the same places, whatever the scene
+  if (!test::sanitized()) {  // the work is cut in the same places, whatever the scene
     scenes.push_back(takenApart(makeBuilding({.floors = 2, .plants = 20}), 1));
     scenes.push_back(makeTerrain({.triangles = 20000}));
   }

@@ -340,7 +340,7 @@ INSTANTIATE_TEST_SUITE_P(Places, BodyPolygonsAt, testing::ValuesIn(kPlaces));
 
 TEST(BodyPolygons, NothingIsCoveredThatSeveralBodiesDoNotHide) {
   Counts counts;
-  for (std::uint64_t seed = 0; seed < (test::kSanitized ? 8 : 16); ++seed) {
+  for (std::uint64_t seed = 0; seed < (test::sanitized() ? 8 : 16); ++seed) {
     BodyScene scene(Place::kBefore, seed);
     for (std::uint64_t more = 1; more < 5; ++more) {
       BodyScene other(more % 2 == 0 ? Place::kBefore : Place::kHalfOff, seed + 240 * more);

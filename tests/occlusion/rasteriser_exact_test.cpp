@@ -306,7 +306,7 @@ TEST(ExactCoverage, TellsSurfacesGapsAndDepthsApart) {
   EXPECT_FALSE(hides({{{{0, -500, 8}, {0, 500, 8}, {4, 500, 8}, {4, -500, 8}}, false}}, 0.0));  // a back
 }
 
-constexpr std::uint64_t kScenes = test::rounds(14000);
+const std::uint64_t kScenes = test::rounds<std::uint64_t>(14000);
 
 TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanItIs) {
   int covered = 0, failures = 0, across = 0;

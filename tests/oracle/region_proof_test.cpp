@@ -252,10 +252,10 @@ void addWallAmongEyes(Scene& scene, MaterialId material, SplitMix& random) {
 }
 
 TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
-  constexpr std::uint64_t kScenes = test::rounds(2000);
+  const std::uint64_t scenes = test::rounds<std::uint64_t>(2000);
   constexpr int kLines = 400;
   int proofs = 0, seen = 0;
-  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+  for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     SplitMix random{seed};
     const auto at = [&](double low, double high) {
       return static_cast<float>(std::round(random.in(low, high) * 2.0) / 2.0);  // ties are common
@@ -301,10 +301,10 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
 
 // Walls beside each other at several distances overlap or leave gaps, as seen from the region.
 TEST(RegionProof, NeverProvesInPartsWhatALineOfSightSees) {
-  constexpr std::uint64_t kScenes = test::rounds(1000);
+  const std::uint64_t scenes = test::rounds<std::uint64_t>(1000);
   constexpr int kLines = 400;
   int proofs_in_parts = 0, seen = 0;
-  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+  for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     SplitMix random{seed};
     const auto at = [&](double low, double high) { return static_cast<float>(random.in(low, high)); };
     Setting s;
@@ -341,8 +341,8 @@ TEST(RegionProof, NeverProvesInPartsWhatALineOfSightSees) {
 // No wall is wider than 0.3 m, and the target is 1 m wide, so it is seen past them. It is beside the region,
 // along the plane that ends it: there a line of sight is nearest to lines from places without eyes.
 TEST(RegionProof, NeverProvesByWallsThatAreSmallerThanTheTarget) {
-  constexpr std::uint64_t kScenes = test::rounds(20000);
-  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+  const std::uint64_t scenes = test::rounds<std::uint64_t>(20000);
+  for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     SplitMix random{seed};
     Setting s;
     s.region.sides = {randomSide(random)};

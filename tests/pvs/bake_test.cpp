@@ -559,7 +559,7 @@ TEST(Bake, KeepsNoSamplesAndLooksAtAnyDistanceWhereObjectsAreMany) {
 
 TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
-  BakeSettings settings{.max_depth = test::kSanitized ? 2u : 3u, .near_distance = 0.1};
+  BakeSettings settings{.max_depth = test::sanitized() ? 2u : 3u, .near_distance = 0.1};
   const BakedVisibility convex = baked(scene, settings);
   settings.occlusion = BakeOcclusion::kFused;
   const BakedVisibility fused = baked(scene, settings);

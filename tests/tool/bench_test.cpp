@@ -239,7 +239,7 @@ TEST(Bench, TheUsualCacheIsWhereTheEnvironmentSays) {
   const TemporaryFolder folder;
   const auto bench_in = [&](const std::string& variables, const std::vector<std::string>& more) {
     std::vector<std::string> words{"-c", "env -u XDG_CACHE_HOME -u HOME " + variables + " \"$0\" \"$@\"",
-                                   SIGHTLINE_TOOL};
+                                   toolFile()};
     return runProgram("/bin/sh", joined(words, benchOf(kBenchCity, joined({"--method", "frustum"}, more))));
   };
   EXPECT_EQ(bench_in("XDG_CACHE_HOME=" + folder.file("cache"), {}).code, 0);

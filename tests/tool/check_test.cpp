@@ -192,7 +192,7 @@ TEST_F(Check, WitnessesOfASideAreOfCellsThatWereNotDivided) {
 
 TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
   use("fused");
-  const std::string divisions = test::kSanitized ? "2" : "4";
+  const std::string divisions = test::sanitized() ? "2" : "4";
   const Outcome outcome = check({"--json", "-", "--divisions", divisions});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const json report = parse(outcome.out);

@@ -224,7 +224,7 @@ TEST_F(WalkWithoutPictures, NothingIsDrawnNorSaidToBeEqual) {
 }
 
 TEST_F(WalkWithoutPictures, AWalkThatFindsNoOpenGlNamesTheOption) {
-  const Outcome outcome = runProgram("env", {"__EGL_VENDOR_LIBRARY_DIRS=/nowhere", SIGHTLINE_TOOL, "walk",
+  const Outcome outcome = runProgram("env", {"__EGL_VENDOR_LIBRARY_DIRS=/nowhere", toolFile(), "walk",
                                              "demo:glass", "--frames", "0", "-o", report_});
   // Only libglvnd reads this variable; with another loader of OpenGL there is nothing to test.
   if (outcome.code == 0) {

@@ -66,7 +66,7 @@ TEST_F(DoorCommands, LeaveOutNothingThatIsVisibleWhicheverAreClosed) {
         run("verify", joined({"--proof", "--pairs", std::to_string(test::rounds(40)), "--json", "-"}, doors));
     EXPECT_EQ(regions.code, 0) << closed << regions.err;
     const Outcome views =
-        run("verify", joined({"--path", "cells", "--frames", test::kSanitized ? "0:2000:268" : "0:2000:67",
+        run("verify", joined({"--path", "cells", "--frames", test::sanitized() ? "0:2000:268" : "0:2000:67",
                               "--width", "64", "--height", "64", "--method",
                               "visibility-octree,depth-pyramid", "--visible-sets", "on", "--json", "-"},
                              doors));

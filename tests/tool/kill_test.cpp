@@ -12,7 +12,7 @@ namespace sightline::tool_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261;
-constexpr int kKills = test::rounds(4);  // of each kind
+const int kKills = test::rounds(4);  // of each kind
 
 void nap() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));

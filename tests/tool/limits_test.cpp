@@ -1,6 +1,7 @@
 // What the tool does where a disk is full, memory is short, or a picture would be too large: one line and
 // exit code 2, and no half of a file.
 
+#include "tests/support/rounds.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -13,7 +14,7 @@ using Words = std::vector<std::string>;
 // Runs the tool where `limit` of the shell's ulimit holds.
 Outcome runLimited(const std::string& limit, const Words& arguments) {
   return runProgram("/bin/sh",
-                    joined({"-c", "ulimit " + limit + "; exec \"$0\" \"$@\"", SIGHTLINE_TOOL}, arguments));
+                    joined({"-c", "ulimit " + limit + "; exec \"$0\" \"$@\"", toolFile()}, arguments));
 }
 
 std::string filesOf(const std::string& folder) {
@@ -65,7 +66,7 @@ TEST(Limits, AFullDiskIsToldWhereverOutputGoes) {
               "sightline: /dev/full: could not be written completely: No space left on device\n");
   }
   const Outcome printed =
-      runProgram("/bin/sh", {"-c", "exec \"$0\" info demo:glass > /dev/full", SIGHTLINE_TOOL});
+      runProgram("/bin/sh", {"-c", "exec \"$0\" info demo:glass > /dev/full", toolFile()});
   EXPECT_EQ(printed.code, 2);
   EXPECT_EQ(printed.err, "sightline: cannot write to standard output\n");
 }
@@ -80,13 +81,14 @@ TEST(Limits, WhatIsPreparedAndCannotBeKeptIsOnlyTold) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-#if !defined(SIGHTLINE_SANITIZED)  // which reserves more memory than there is
 TEST(Limits, TooLittleMemoryIsTold) {
+  if (test::sanitized()) {
+    GTEST_SKIP() << "sanitizers reserve more memory than the limit";
+  }
   const Outcome outcome = runLimited("-v 700000", {"info", "demo:boxes?boxes=1000000"});
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_EQ(outcome.err, "sightline: out of memory: the scene or the result is too large for this machine\n");
 }
-#endif
 
 TEST(Limits, PicturesThatAreTooLargeAreRefused) {
   const TemporaryFolder folder;

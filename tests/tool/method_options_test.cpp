@@ -223,7 +223,7 @@ TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
                                      "--planes",    "through-eye,through-box",
                                      "--hierarchy", "kd,bvh",
                                      "--coherence", "on,off",
-                                     "--frames",    test::kSanitized ? "0:400:100" : "0:400:25",
+                                     "--frames",    test::sanitized() ? "0:400:100" : "0:400:25",
                                      "--width",     "640",
                                      "--height",    "360",
                                      "--json",      "-"});
@@ -363,7 +363,7 @@ TEST_F(BakedMethods, TheCellsAreAPath) {
 TEST_F(BakedMethods, HideNothingVisibleAtTheBordersOfCells) {
   const Outcome outcome =
       runTool({"verify", kScene, "--baked", file(), "--path", "cells", "--frames",
-               test::kSanitized ? "0:500:20" : "0:500:5", "--width", "320", "--height", "180", "--method",
+               test::sanitized() ? "0:500:20" : "0:500:5", "--width", "320", "--height", "180", "--method",
                "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
                "--visible-sets", "on", "--json", "-"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -63,7 +63,7 @@ TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
   // With sanitizers the building takes minutes, and the code that it runs is that of the city.
   const std::vector<std::string> all{"demo:city?copies=1", "demo:building?floors=1"};
   std::vector<std::string> scenes;
-  for (const std::string& scene : std::span(all).first(test::kSanitized ? 1 : 2)) {
+  for (const std::string& scene : std::span(all).first(test::sanitized() ? 1 : 2)) {
     scenes.insert(scenes.end(), {"--scene", scene});
   }
   const json result = reproduced(scenes);

@@ -76,9 +76,15 @@ inline Outcome runProgram(const std::string& program, const std::vector<std::str
           contents(folder.file("err"))};
 }
 
+// The tool of the build that this test belongs to.
+inline std::string toolFile() {
+  const auto build = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  return (build / "bin" / "sightline").string();
+}
+
 // Runs the tool with these arguments, each of which is one word.
 inline Outcome runTool(const std::vector<std::string>& arguments) {
-  return runProgram(SIGHTLINE_TOOL, arguments);
+  return runProgram(toolFile(), arguments);
 }
 
 // The same, but only once in a process for the same arguments: for tests of one suite that look at the same

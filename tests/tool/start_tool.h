@@ -102,7 +102,7 @@ inline std::vector<std::string> toolWords(int processes, const std::vector<std::
     setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // the MPI library leaks
     words = {"mpirun", "-n", std::to_string(processes), "--bind-to", "none"};
   }
-  words.push_back(SIGHTLINE_TOOL);
+  words.push_back(toolFile());
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }

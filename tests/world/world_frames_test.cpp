@@ -16,52 +16,10 @@
 #include "tests/support/count_allocations.h"
 #include "tests/world/world_story.h"
 
-// Counts what this program takes from the C library itself, which operator new does too. Sanitizers have
-// functions of their own.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define SIGHTLINE_TEST_NO_MALLOC
-#endif
-#endif
-#else
-#define SIGHTLINE_TEST_NO_MALLOC
-#endif
-
-namespace {
-std::atomic<std::size_t> from_c{0};
-}
-
-#ifndef SIGHTLINE_TEST_NO_MALLOC
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) noexcept {
-  ++from_c;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++from_c;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) noexcept {
-  ++from_c;
-  return __libc_realloc(memory, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++from_c;
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
-  ++from_c;
-  *memory = __libc_memalign(alignment, size);
-  return *memory == nullptr ? 12 : 0;
-}
-}
-#endif
+namespace sightline::test {
+// How often the C library was asked for memory. Null where that is not counted: see count_malloc.cpp.
+[[gnu::weak]] std::size_t callsOfMalloc();
+}  // namespace sightline::test
 
 namespace sightline {
 namespace {
@@ -165,10 +123,10 @@ TEST(WorldFrames, AReservedWorldGrowsWithoutCopyingWhatIsThere) {
 // An engine that replaces operator new sees all memory of a world. Where a sanitizer has taken the place of
 // the C library's functions, they cannot be replaced once more and counted, so there is nothing to compare.
 TEST(WorldFrames, TakeAllMemoryFromOperatorNew) {
-#ifdef SIGHTLINE_TEST_NO_MALLOC
-  GTEST_SKIP() << "the C library's functions cannot be counted here";
-#else
-  const std::size_t c_before = from_c, new_before = allocations;
+  if (test::callsOfMalloc == nullptr) {
+    GTEST_SKIP() << "the C library's functions cannot be counted here";
+  }
+  const std::size_t c_before = test::callsOfMalloc(), new_before = allocations;
   {
     Crowd crowd(1500);
     WorldCuller culler;
@@ -188,8 +146,7 @@ TEST(WorldFrames, TakeAllMemoryFromOperatorNew) {
     crowd.story.world.rebuild();
   }
   EXPECT_GT(allocations - new_before, 1000u);
-  EXPECT_EQ(from_c - c_before, allocations - new_before);
-#endif
+  EXPECT_EQ(test::callsOfMalloc() - c_before, allocations - new_before);
 }
 
 TEST(WorldFrames, ThreadsThatCullOneWorldGiveTheSameAnswers) {
