@@ -42,7 +42,7 @@ class DoubtsOf {
   std::uint32_t chance(Id object) const { return kCertain >> of(object).halvings; }
 
   // The object shows in many pixels, so no finer buffer hides it.
-  void clear(Id object) { set(object, kClearRest, std::max(of(object).halvings, kUntried)); }
+  void showsClearly(Id object) { set(object, kClearRest, std::max(of(object).halvings, kUntried)); }
   void hidden(Id object) { set(object, 0, 0); }
   // The object is one that was never looked at.
   void forget(Id object) { set(object, 0, kUntried); }

@@ -50,6 +50,11 @@ struct AskAll {
 template <typename Classify>
 AskAll(Classify) -> AskAll<Classify>;
 
+// A structure that hides nothing: what is left is view-frustum culling.
+inline auto seeEverything() {
+  return AskAll{[](const TraversalBox&) { return Visibility::kVisible; }};
+}
+
 struct TraversalOptions {
   std::uint32_t min_node_cost = 0;
   bool temporal_coherence = true;
@@ -181,11 +186,13 @@ class HierarchicalTraversal {
       const Box& box = object_bounds_[object.value];
       const bool is_the_node = box == leaf.bounds;
       if (!is_the_node) {
-        // An object in several leaves is tested once, because its own box gives the same answer in each.
-        if (hierarchy_.kind == HierarchyKind::kKdTree && !decided_.insert(object)) {
+        // An object in several leaves is tested once, in the first one that is reached. It may extend beyond
+        // that leaf, to where other planes of the frustum cut it.
+        const bool beyond = hierarchy_.kind == HierarchyKind::kKdTree;
+        if (beyond && !decided_.insert(object)) {
           continue;
         }
-        std::uint8_t object_planes = planes;
+        std::uint8_t object_planes = beyond ? kAllFrustumPlanes : planes;
         if (object_planes != 0 && sightline::classify(frustum, box, object_planes) == FrustumSide::kOutside) {
           continue;
         }

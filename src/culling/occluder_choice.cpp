@@ -1,7 +1,5 @@
 #include "src/culling/occluder_choice.h"
 
-#include "src/culling/methods/traversal_options.h"
-
 namespace sightline::culling {
 namespace {
 

@@ -77,6 +77,7 @@ void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& opti
                         std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
   entries_.clear();
   hidden_children_.clear();
+  some_delayed_ = some_delayed_ || options.temporal_coherence;
   if (!wide_.nodes.empty()) {
     // The root itself is never tested, only its children. So its own cost decides here.
     entries_.push_back({0, wide_.nodes[0].cost < options.min_node_cost});
@@ -187,8 +188,15 @@ void WideTraversal::restrictTo(const ObjectSet& objects) {
   }
   child_marks_->mark(objects.list);
   // Reset the delay of children outside the set: it is out of date when they come back.
-  for (std::size_t child = 0; child < retest_delay_.size(); ++child) {
+  for (std::size_t child = 0; some_delayed_ && child < retest_delay_.size(); ++child) {
     retest_delay_[child] &= child_marks_->marks()[child];
+  }
+}
+
+void WideTraversal::forget() {
+  if (some_delayed_) {
+    std::fill(retest_delay_.begin(), retest_delay_.end(), std::uint8_t{0});
+    some_delayed_ = false;
   }
 }
 

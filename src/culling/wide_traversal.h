@@ -53,7 +53,7 @@ class WideTraversal {
   void restrictTo(const ObjectSet& objects);
 
   // Drops the knowledge of earlier views that the answers depend on; call this when the camera jumps.
-  void forget() { std::fill(retest_delay_.begin(), retest_delay_.end(), std::uint8_t{0}); }
+  void forget();
 
  private:
   static constexpr std::uint32_t kMaxRanges = 64;
@@ -105,6 +105,7 @@ class WideTraversal {
   ObjectBits hidden_;
   std::vector<ObjectId> hidden_children_;
   std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again
+  bool some_delayed_ = false;               // not all delays are 0
   // By child: a point of its box at which it was last seen, first its centre. Where that is still seen, an
   // object is kept untested, and of a node only kVisible and kPartial are told apart; the answers do not
   // depend on it.

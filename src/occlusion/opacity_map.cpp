@@ -111,14 +111,15 @@ void OpacityMap::reserve(const SurfaceSet& surfaces) {
 
 void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
-  impl_->ready = false;
   impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
+  impl_->ready = impl_->ready && impl_->raster.surfaceStats().groups == 0;
 }
 
 SurfaceStats OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
                               const ParallelFor& parallel_for) {
-  impl_->ready = false;
-  return impl_->raster.draw(moving, drawing, parallel_for);
+  const SurfaceStats drawn = impl_->raster.draw(moving, drawing, parallel_for);
+  impl_->ready = impl_->ready && drawn.groups == 0;
+  return drawn;
 }
 
 void OpacityMap::finish() {

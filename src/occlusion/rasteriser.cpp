@@ -98,9 +98,12 @@ struct Rasteriser::Impl {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen, const ParallelFor& parallel_for) {
     const PolygonForm form = settings.coverage == nullptr ? PolygonForm::kConservative : PolygonForm::kExact;
     builder.build(PolygonProjection(view, form, settings.width, settings.height), set, chosen, polygons);
-    sortPolygons();
-    drawn.assign(order.size() * bands, settings.coverage != nullptr ? 1 : 0);
-    parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
+    if (!polygons.polygons.empty()) {
+      sortPolygons();
+      drawn.assign(order.size() * bands, settings.coverage != nullptr ? 1 : 0);
+      parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
+      contents = Contents::kOther;
+    }
     count();
   }
 
@@ -195,7 +198,6 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
                       const ParallelFor& parallel_for) {
   if (!impl_->view.viewers.several()) {
     impl_->draw(set, chosen, parallel_for);
-    impl_->contents = Impl::Contents::kOther;
   }
 }
 

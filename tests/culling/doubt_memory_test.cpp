@@ -84,7 +84,7 @@ TEST(DoubtMemory, KeepsWhatIsKnownOfAnObjectThatShowsInManyPixelsForAWhile) {
 TEST(DoubtMemory, LetsObjectsThatWereLookedAtTogetherReturnInDifferentViews) {
   DoubtMemory memory(8);
   for (std::uint32_t i = 0; i < 8; ++i) {
-    memory.clear(ObjectId(i));
+    memory.showsClearly(ObjectId(i));
   }
   std::vector<std::uint32_t> back;
   for (std::uint32_t i = 0; i < 8; ++i) {

@@ -77,7 +77,6 @@ struct SurfaceDrawing {
   // Surfaces whose rectangle has fewer pixels for each edge of their boundary are left out: they hardly cover
   // any.
   double pixels_per_edge = 4.0;
-  bool seams = true;  // each part is drawn together with what adjoins it too
   // Surfaces are drawn, the nearest ones first, until they have cost so much: 1 for each edge of their
   // boundaries, 1 for each tile of 32 x 8 pixels, and 8 for each time that some are drawn together.
   std::uint32_t budget = 60000;
@@ -93,12 +92,10 @@ struct SurfaceDrawing {
 
 // What a draw() of surfaces drew.
 struct SurfaceStats {
-  std::uint32_t patches = 0, clusters = 0;  // that were looked at closely
-  std::uint32_t groups = 0;                 // of clusters that were drawn together
-  std::uint32_t edges = 0;                  // of their boundaries
-  std::uint32_t work = 0;                   // what they cost, as SurfaceDrawing::budget counts it
-  std::uint32_t gain = 0;                   // pixels that became nearer by an eighth or more, before targets
-  bool complete = true;                     // the budget was enough
+  std::uint32_t groups = 0;  // of clusters that were drawn together
+  std::uint32_t edges = 0;   // of their boundaries
+  std::uint32_t work = 0;    // what they cost, as SurfaceDrawing::budget counts it
+  std::uint32_t gain = 0;    // pixels that became nearer by an eighth or more, before targets
 };
 
 struct RasterStats {

@@ -163,7 +163,7 @@ class DepthPyramidMethod final : public CullingMethod {
   std::optional<DepthPyramid> pyramid_;
   std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
-  double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
+  double work_ = 0.0;                        // of surfaces in the view's own buffer, as budgets count it
   std::vector<Box> hidden_;                  // what is to be hidden in this view, as it was in the last one
   std::size_t turn_ = 0;
   // Scratch for one classify() call: all boxes, the points at which they were last seen and whether they

@@ -102,7 +102,7 @@ void FocusMaps::findDoubts(const DepthPyramid& buffer, std::span<const ObjectId>
   std::uint32_t first = 0;
   for (std::size_t i = 0; i < asked_.size(); ++i) {
     if (counts_[i] == kManyPixels) {
-      memory_.clear(visible[asked_[i]]);
+      memory_.showsClearly(visible[asked_[i]]);
       continue;
     }
     // What the first buffer hides is kept because it was not tested, and that is not in doubt.

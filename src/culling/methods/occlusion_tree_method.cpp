@@ -53,7 +53,7 @@ class OcclusionTreeMethod final : public CullingMethod {
   std::optional<OcclusionTree> tree_;
   std::array<MethodStatistic, 3> statistics_{{{"tree", "nodes", "nodes of the tree"},
                                               {"tree", "plane_tests", "plane tests"},
-                                              {"tree", "dropped", "fragments without room"}}};
+                                              {"tree", "dropped", "occluders without room"}}};
 };
 
 }  // namespace

@@ -173,7 +173,7 @@ class SurfaceDrawer {
       findNews(shown, in_frustum_);
       draw(buffer, news_, ViewStep::kSame, whatIsLeft(true));
       work_ += count(buffer);
-      return true;
+      return buffer.surfaceStats().groups > 0;
     }
     findNews(shown, last_kept_);
     const bool most_is_new = culling::mostIsNew(news_.size(), shown.size());
@@ -197,8 +197,9 @@ class SurfaceDrawer {
     SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
     drawing.draw_resting = most_is_new;
     draw(buffer, news_, ViewStep::kSame, drawing);
-    count(buffer);
-    return true;
+    const double drawn = count(buffer);
+    work_ += timed_.limits() ? drawn : 0.0;
+    return buffer.surfaceStats().groups > 0;
   }
 
   // How surfaces are drawn with what is left of the frame's budget.

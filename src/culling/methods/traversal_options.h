@@ -12,9 +12,4 @@ inline TraversalOptions optionsOf(const CullingFrame& frame, bool skip_partial) 
   return {frame.min_node_cost, skip_partial, frame.test_objects, frame.filter};
 }
 
-// A structure that hides nothing: what is left is view-frustum culling.
-inline auto seeEverything() {
-  return AskAll{[](const TraversalBox&) { return Visibility::kVisible; }};
-}
-
 }  // namespace sightline::culling

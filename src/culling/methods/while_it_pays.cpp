@@ -170,7 +170,7 @@ class WhileItPays final : public CullingMethod {
     statistics_.push_back(
         {"renderer", "given_up", "frames without occlusion culling", std::uint64_t{given_up_}});
     statistics_.push_back({"renderer", "saved_us", "microseconds of drawing saved",
-                           static_cast<std::uint64_t>(std::llround(std::min(saved_us_, 1e15)))});
+                           static_cast<std::uint64_t>(std::llround(std::min(saved_us_, kMostUs)))});
   }
 
   std::unique_ptr<CullingMethod> method_;

@@ -8,14 +8,9 @@
 
 #include "src/occlusion/boxes/box_outline.h"
 #include "src/occlusion/boxes/box_point.h"
+#include "src/occlusion/boxes/sized_vectors.h"
+#include "src/occlusion/eye_box.h"
 
-// Arrays of vectors are used here, which those without a fixed size cannot be in. Machines with these
-// instruction sets take the best one that is left; no test is left out, all run on every set that is left.
-// The build with sanitizers has named these and two more already: cmake/SightlineTarget.cmake says why
-// nothing that it looks for is lost.
-#if !defined(HWY_DISABLED_TARGETS)
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/boxes/box_depth_test.cpp"
 #include <hwy/foreach_target.h>
@@ -345,15 +340,10 @@ float rounded(double value) {
   return static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
 }
 
-// The greatest distances of the box's points from the eye along each axis, metres.
-Vec3d farthestFrom(const Vec3d& eye, const Box& box) {
-  return max(abs(Vec3d(box.min) - eye), abs(Vec3d(box.max) - eye));
-}
-
 // Whether the outline and the faces of a box can be computed wherever it lies.
 bool hasOutline(const OutlineView& view, const Box& box) {
   constexpr double kLargest = 0x1p60;  // metres; products stay finite
-  return view.sane && box.wellFormed() && maxComponent(farthestFrom(view.view.eye, box)) < kLargest;
+  return view.sane && box.wellFormed() && maxComponent(EyeBox::of(box, view.view.eye).reach()) < kLargest;
 }
 
 // Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there is
@@ -382,19 +372,18 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const OutlineView& outli
   image.x1 = static_cast<std::uint16_t>(buffer.width - 1);
   image.y1 = static_cast<std::uint16_t>(buffer.height - 1);
   image.nearest = rounded(view.reciprocalDepth(view.frustum_near));
-  image.farthest = rounded(view.reciprocalDepth(dot(abs(view.forward), farthestFrom(view.eye, box))));
+  image.farthest = rounded(view.reciprocalDepth(dot(abs(view.forward), EyeBox::of(box, view.eye).reach())));
   // An empty buffer hides nothing, not even what lies beside the view.
   if (!anyNearer(levels, level, image, all, kUncovered)) {
     return false;
   }
   const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
   const BoxOutline outline = outlineOf(outline_view, box, 0, 0, reach);
-  // Without faces the eye is in the box or on it, or nothing is known of them.
+  if (!outline.has_faces) {
+    return false;  // the eye is in the box or on it, or nothing is known of its faces
+  }
   Refinement refinement(levels, image, outline);
   refinement.rows_left = kMaxRows;
-  if (!outline.has_faces) {
-    return false;
-  }
   const bool open = refinement.anyOpen(level, all);
   setPoint(levels, view, box, refinement.open, seen_point);
   return !open;

@@ -22,13 +22,9 @@ void ActivePolygons::add(const EyeOccluder& seen, OccluderId chosen, double inse
 
 double ActivePolygons::commonClipDepth(double near) const {
   double depth = near * (1.0 + kDepthMargin);
-  for (bool raised = true; raised;) {
-    raised = false;
-    for (const ActivePolygon& polygon : polygons_) {
-      if (polygon.seen.nearest < polygon.seen.clip_depth && polygon.seen.clip_depth > depth) {
-        depth = polygon.seen.clip_depth;
-        raised = true;
-      }
+  for (const ActivePolygon& polygon : polygons_) {
+    if (polygon.seen.nearest < polygon.seen.clip_depth) {
+      depth = std::max(depth, polygon.seen.clip_depth);
     }
   }
   return depth;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "src/occlusion/eye_box.h"
 #include "src/occlusion/surfaces/boundary_edge.h"
 
 namespace sightline::occlusion {
@@ -17,7 +18,7 @@ constexpr double kBorder = 2.0 / kGridStep;  // pixels by which rectangles are w
 double reachOf(const Box& box, const PixelView& view) {
   // Boxes seen at a larger slope are too near for single precision, and pixel_boxes gives them no rectangle.
   constexpr double kLargestSlope = 0x1p15;
-  const Vec3d far = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
+  const Vec3d far = EyeBox::of(box, view.eye).reach();
   return view.orthographic ? far.x + far.y + far.z : kLargestSlope;
 }
 

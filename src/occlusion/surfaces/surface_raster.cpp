@@ -84,9 +84,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
     }
   }
   drawGroups();
-  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
   stats_.work = static_cast<std::uint32_t>(work_);
-  stats_.complete = work_ < drawing.budget;
 }
 
 void SurfaceRaster::start(const SurfaceSet& set) {
@@ -147,8 +145,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
   const SurfacePart& part = set_->parts[image.part];
   part_ = image.part;
   part_distance_ = length(center(set_->part_bounds[image.part]) - memory_->eye);
-  const std::span<const std::uint32_t> adjoining =
-      drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
+  const std::span<const std::uint32_t> adjoining = set_->adjoiningOf(image.part);
   bool together = part.patch_count + adjoining.size() > 1 && pays(pixels, part.edge_count) &&
                   !leavesOut(memory_->part_rests[image.part]);
   if (!together && !pays(pixels, kFewestEdges)) {
@@ -211,7 +208,6 @@ std::uint64_t SurfaceRaster::countWanted() {
       pixels = std::min(pixels, map_->wanted(patch.rectangle, patch.depth));
     }
     wanted_.push_back(pixels);
-    stats_.patches += pixels > 0 ? 1 : 0;
     sum += pixels;
   }
   return sum;

@@ -29,8 +29,8 @@ class SurfaceRaster {
   const SurfaceStats& stats() const { return stats_; }
 
  private:
-  // How often what is of the group that a chain was in most recently runs along it, less how often it runs
-  // back.
+  // How often clusters of a group run along a chain, less how often they run back. It is the sum of the
+  // group that looked at the chain last; for another group it counts as 0.
   struct ChainSum {
     std::uint32_t group = 0;
     std::int32_t value = 0;

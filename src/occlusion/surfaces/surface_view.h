@@ -78,7 +78,7 @@ class SurfaceView {
   void setDepth(PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
-  // The same of clusters by their numbers.
+  // Appends these clusters to clusters(), so far as they may show their fronts.
   void addClusters(std::span<const std::uint32_t> numbers);
   std::span<const ClusterImage> clusters() const { return clusters_; }  // since begin()
 

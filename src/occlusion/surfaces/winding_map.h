@@ -76,7 +76,7 @@ class WindingMap {
   void beginMap(const DepthTarget& target);
   PixelRectangle pixelsOfPlans() const;
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;
-  // The rows of tiles from first_row to last_row of a group.
+  // Draws a group into the rows of tiles from first_row to last_row, and returns what that gained.
   WindingGain drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
                        std::int32_t first_row, std::int32_t last_row);
 

@@ -264,8 +264,8 @@ HWY_INLINE std::int32_t coverRow(WindingTile* tiles, const TileExtent& extent, s
   return x - 1;
 }
 
-// A row of tiles of a group that is drawn in tiles. First all of them are covered, and then depths are set:
-// so the processor need not wait for what one tile covers before it begins with the next one.
+// Sets the depths of a row of tiles of a group that is drawn in tiles. First all tiles are covered, and then
+// depths are set: so the processor need not wait for what one tile covers before it begins with the next one.
 template <typename Depths>
 HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
                              const Depths& depths, const Gains& gains, WindingGain& gain) {
@@ -283,7 +283,7 @@ HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const Pi
   }
 }
 
-// The same of a group that is drawn in runs.
+// Sets the depths of a row of tiles of a group that is drawn in runs.
 template <typename Depths>
 HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
                             const Depths& depths, const Gains& gains, WindingGain& gain) {
@@ -302,7 +302,7 @@ HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const Pix
   }
 }
 
-// Either of them, in all rows of tiles.
+// Sets the depths of a group in all rows of tiles that it touches.
 template <typename Depths, typename Source>
 HWY_INLINE WindingGain resolveRows(const GroupCover& group, const Source& source) {
   WindingGain gain;

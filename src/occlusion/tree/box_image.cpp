@@ -16,7 +16,7 @@ void BoxImage::begin(const EyeBox& box, const Eye& eye, double scale) {
   // measured by the nearest one.
   reach_ = eye.orthographic ? box.farthest() : 1.0;
   scale_ = eye.orthographic ? scale : 0.0;
-  on_plane_scale_ = eye.orthographic ? l1Norm(max(max(box.min, -box.max), Vec3d())) + scale : 0.0;
+  on_plane_scale_ = eye.orthographic ? box.nearest() + scale : 0.0;
   stack_.overflow = false;
   stack_.corners.clear();
   parts_.clear();

@@ -161,10 +161,10 @@ State SplittingQuery::classify(const TreeData& tree, const BoxQuestion& question
   tree_ = &tree;
   question_ = &question;
   const EyeBox& box = question.box;
-  reach_ = l1Norm(max(abs(box.min), abs(box.max)));
+  reach_ = box.farthest();
   // The scale is that of the box's nearest point: a corner far away may be the end of an edge that passes
   // close by.
-  on_plane_scale_ = l1Norm(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
+  on_plane_scale_ = box.nearest() + tree.on_plane_scale;
   stack_.overflow = false;
   State state = State::kNothing;
   for (int axis = 0; axis < 3 && state != State::kPartial; ++axis) {
@@ -337,7 +337,7 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
   const OcclusionVolume& volume = tree.volumes.volumes[leaf.volume];
   const Eye& eye = tree.volumes.eye;
   const auto base = std::span(tree.corners).subspan(leaf.first_corner, leaf.corner_count);
-  const double margin = supportMargin(volume, max(abs(box.min), abs(box.max))) + kDepthMargin * volume.reach;
+  const double margin = supportMargin(volume, box.reach()) + kDepthMargin * volume.reach;
   const SeparatingAxis test(base, eye.orthographic, eye.forward, box, margin);
   const std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
   for (const Vec3d& axis : axes) {
