@@ -33,12 +33,13 @@ namespace world {
 struct WorldData;
 }
 
-using MeshId = Id<struct MeshTag>;  // of a World
-// An instance of a World. It stays the same as long as the instance is there; afterwards the next one that is
-// added may have it.
+// Of a World. Ids of meshes, instances and joins stay the same as long as these are there; after
+// removeMesh(), remove() or drop(), the next one that comes may have the same id. So forget an id together
+// with what it names.
+using MeshId = Id<struct MeshTag>;
 using InstanceId = Id<struct InstanceTag>;
-using JoinId = Id<struct JoinTag>;  // of a World
-using SetsId = Id<struct SetsTag>;  // of a World
+using JoinId = Id<struct JoinTag>;
+using SetsId = Id<struct SetsTag>;  // of a World; never given again
 
 struct Instance {
   MeshId mesh{};
