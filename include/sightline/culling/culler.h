@@ -66,13 +66,13 @@ class Culler {
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;
 
-  // One frame. view: in scene space. dynamic_boxes: moving occludees, in scene space, classified in the same
-  // call; sets say nothing about them.
-  // Does not fail, and does not allocate after a few frames; with a view that validate() refuses, everything
-  // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), in scene space,
-  // all of which are used in addition by all methods that have occluders. They need to outlive the call only.
-  // moving_surfaces: whole surfaces that move, drawn by the methods that draw surfaces, whether the scene has
-  // a SurfaceSet or not, unless the method is set to draw none.
+  // One frame; view, boxes and occluders are in scene space. Does not fail, and does not allocate after a few
+  // frames; with a view that validate() refuses, everything is visible (CullStats::view_fault).
+  // dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them. moving:
+  // occluders of this frame only (makeOccluders), all of which are used in addition by all methods that have
+  // occluders. They need to outlive the call only. moving_surfaces: whole surfaces that move, drawn by the
+  // methods that draw surfaces, whether the scene has a SurfaceSet or not, unless the method is set to draw
+  // none.
   void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr,
             std::span<const MovingSurfaces> moving_surfaces = {});
 

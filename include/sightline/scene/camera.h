@@ -11,7 +11,8 @@
 
 namespace sightline {
 
-// A viewpoint with its projection, in scene space. The camera looks along `forward`. See validate().
+// A viewpoint with its projection, in the space of what is seen: scene space for a scene, so for a Culler,
+// and world space for a World. The camera looks along `forward`. See validate().
 struct View {
   Vec3d eye{};
   Vec3d right{}, up{}, forward{};  // orthonormal, right-handed: forward = up x right
@@ -41,13 +42,14 @@ Result<View> validate(const View& view);
 // Sets right and up from any forward and up hint, even if they are parallel.
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint);
 
-// OpenGL's clip space: x, y, z in [-w, w], z = -w on the near plane. The view must be one that validate()
-// accepts. If far is infinite, points at infinity have z = w. A depth buffer then cannot distinguish depths
-// in an orthographic view; nor can it in any view with near = 0.
+// OpenGL's clip space, from the view's own space: x, y, z in [-w, w], z = -w on the near plane. Of a view in
+// world space this is clip_from_world. The view must be one that validate() accepts. If far is infinite,
+// points at infinity have z = w. A depth buffer then cannot distinguish depths in an orthographic view; nor
+// can it in any view with near = 0.
 Mat4 clipFromScene(const View& view);
 
-// The six frustum planes of the view, in scene space. For a view that validate() rejects: planes that contain
-// all of space.
+// The six frustum planes of the view, in its own space. For a view that validate() rejects: planes that
+// contain all of space.
 Frustum frustumOf(const View& view);
 
 // Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a
@@ -71,7 +73,8 @@ struct CameraPath {
   double near = 0.1, far = 2000.0;           // metres
   std::vector<CameraFrame> frames{};
 
-  // The view of one frame, in the scene space of a scene with this origin.
+  // The view of one frame, in the scene space of a scene with this origin; with {}, in world space, as a
+  // World needs it.
   View view(std::size_t frame, const Vec3d& scene_origin) const;
 };
 
