@@ -5,7 +5,9 @@
 // A renderer tells a World what there is, and asks a WorldCuller, one for each view, what may be seen:
 //
 //   World world;
-//   const MeshId crate = world.addMesh(*makeMesh(mesh));                  // once a mesh
+//   Result<WorldMesh> made = makeMesh(mesh);                              // once a mesh
+//   if (!made) ... made.error().message
+//   const MeshId crate = world.addMesh(std::move(*made));
 //   const InstanceId one = world.add({crate, world_from_mesh});           // at any time
 //   world.setTransform(one, elsewhere);
 //   world.tidy();                                                         // once a frame

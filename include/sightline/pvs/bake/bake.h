@@ -35,7 +35,7 @@ struct BakeSettings {
   // unless the settings say otherwise.
   static constexpr std::size_t kManyObjects = 20'000;
 
-  // Fused sets are smaller, and take some hundred times as long to bake.
+  // Fused sets are smaller, and take some fifty times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
   // Maximum number of bytes of the file, without its settings and occluder databases; 0: any. Of the cells
