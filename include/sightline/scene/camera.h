@@ -22,11 +22,11 @@ struct View {
   double ortho_height = 10.0;
   double aspect = 16.0 / 9.0;  // width / height
   // Where the middle of the picture lies off the forward axis: half widths to the right and half heights up,
-  // at most kLargestShift. Both are 0 in a symmetric view. With 1, the axis is at the left or lower border of
+  // at most kMaxShift. Both are 0 in a symmetric view. With 1, the axis is at the left or lower border of
   // the picture; beyond, outside of it. In the terms of glFrustum() and glOrtho(), shift_x is (right + left)
   // / (right - left), and shift_y is (top + bottom) / (top - bottom).
   double shift_x = 0.0, shift_y = 0.0;
-  static constexpr double kLargestShift = 1000.0;
+  static constexpr double kMaxShift = 1000.0;
   double near = 0.1;    // metres along forward, >= 0
   double far = 1000.0;  // metres along forward, > near; may be infinite
 };
