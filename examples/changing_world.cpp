@@ -19,7 +19,7 @@ struct Vertex {
 };
 
 // A box of one metre, four vertices a face, 16-bit indices.
-WorldMesh boxMesh() {
+WorldMesh unitCube() {
   std::vector<Vertex> vertices;
   std::vector<std::uint16_t> indices;
   for (int axis = 0; axis < 3; ++axis) {
@@ -73,7 +73,7 @@ void print(const char* when, const WorldCuller& culler) {
 
 int main() {
   World world;
-  const MeshId box = world.addMesh(boxMesh());  // once a mesh; its instances share what was found in it
+  const MeshId box = world.addMesh(unitCube());  // once a mesh; its instances share what was found in it
   const InstanceId wall = world.add({.mesh = box, .world_from_mesh = boxAt({-8, 0, -11}, {16, 6, 1})});
   const InstanceId crate = world.add({.mesh = box, .world_from_mesh = boxAt({-2, 0, -20}, {1, 1, 1})});
   for (const double x : {3.0, 16.0}) {

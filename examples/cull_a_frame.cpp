@@ -1,6 +1,8 @@
 // Culls one frame of a scene made by hand: a wall, four crates behind it, one crate beside it.
 
+#include <cstdint>
 #include <cstdio>
+#include <vector>
 
 #include "sightline/culling/culler.h"
 #include "sightline/culling/occlusion_tree_method.h"
@@ -29,8 +31,10 @@ int main() {
   }
   updateBounds(scene);
   std::vector<Box> bounds;
+  std::vector<std::uint32_t> triangles;  // of each object
   for (const Object& object : scene.objects) {
     bounds.push_back(object.bounds);
+    triangles.push_back(object.triangleCount());
   }
 
   View view;
@@ -38,7 +42,7 @@ int main() {
   setOrientation(view, /*forward=*/{0, 0, -1}, /*up_hint=*/{0, 1, 0});
 
   // A hierarchy over the objects, and what can hide them; then from views to the objects that may be seen.
-  const Hierarchy hierarchy = buildHierarchy(bounds, {});  // once a scene
+  const Hierarchy hierarchy = buildHierarchy(bounds, triangles);  // once a scene
   const OccluderSet occluders = findOccluders(scene.view());
   Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders}, occlusionTree());
   culler.cull(view);  // every frame

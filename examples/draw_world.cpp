@@ -7,11 +7,13 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -269,6 +271,10 @@ class Town {
                                              .indices = indices_.data(),
                                              .index_bytes = 2,
                                              .index_count = indices_.size()});
+    if (!mesh) {
+      std::fprintf(stderr, "draw_world: %s\n", mesh.error().message.c_str());
+      std::exit(1);
+    }
     box_ = world_.addMesh(*mesh);
     build();
   }

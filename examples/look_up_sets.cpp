@@ -1,8 +1,10 @@
 // Looks up what may be seen from a place in a baked file, and culls a frame with it.
 // Create a file with: sightline bake SCENE -o F.sight
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <vector>
 
 #include "sightline/culling/culler.h"
 #include "sightline/culling/visibility_octree_method.h"

@@ -15,7 +15,7 @@ bool isSize(double value) {
 }
 
 bool isShift(double value) {
-  return std::abs(value) <= View::kLargestShift;
+  return std::abs(value) <= View::kMaxShift;
 }
 
 bool isPageSide(double value) {

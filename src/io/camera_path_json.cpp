@@ -98,7 +98,7 @@ Status readShift(const json& object, const char* key, const std::string& where, 
     return Success{};
   }
   const auto inRange = [](const json& value) {
-    return value.is_number() && std::abs(value.get<double>()) <= View::kLargestShift;
+    return value.is_number() && std::abs(value.get<double>()) <= View::kMaxShift;
   };
   if (!(found->is_array() && found->size() == 2 && inRange((*found)[0]) && inRange((*found)[1]))) {
     return missing(where, key, "two numbers from -1000 to 1000");

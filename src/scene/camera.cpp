@@ -22,41 +22,41 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
 }
 
 Mat4 clipFromScene(const View& view) {
-  Mat4 camera_from_scene;
+  Mat4 view_from_scene;
   Vec3d axes[3] = {view.right, view.up, -view.forward};
   for (Vec3d& axis : axes) {
     makeUnit(axis);  // not makeUsable(): the picture of a left-handed view is mirrored
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      camera_from_scene(row, column) = axes[row][column];
+      view_from_scene(row, column) = axes[row][column];
     }
-    camera_from_scene(row, 3) = -dot(axes[row], view.eye);
+    view_from_scene(row, 3) = -dot(axes[row], view.eye);
   }
-  Mat4 clip_from_camera;
+  Mat4 clip_from_view;
   // Limits for far -> infinity: (far + near) / (far - near) -> 1, far / (far - near) -> 1.
   const bool endless = std::isinf(view.far);
   const double depth = view.far - view.near;
   const double middle = endless ? 1.0 : (view.far + view.near) / depth;
   if (view.orthographic) {
     const double half = view.ortho_height * 0.5;
-    clip_from_camera(0, 0) = 1.0 / (half * view.aspect);
-    clip_from_camera(1, 1) = 1.0 / half;
-    clip_from_camera(0, 3) = -view.shift_x;
-    clip_from_camera(1, 3) = -view.shift_y;
-    clip_from_camera(2, 2) = -2.0 / depth;
-    clip_from_camera(2, 3) = -middle;
+    clip_from_view(0, 0) = 1.0 / (half * view.aspect);
+    clip_from_view(1, 1) = 1.0 / half;
+    clip_from_view(0, 3) = -view.shift_x;
+    clip_from_view(1, 3) = -view.shift_y;
+    clip_from_view(2, 2) = -2.0 / depth;
+    clip_from_view(2, 3) = -middle;
   } else {
-    clip_from_camera(0, 0) = 1.0 / (view.tan_half_fovy * view.aspect);
-    clip_from_camera(1, 1) = 1.0 / view.tan_half_fovy;
-    clip_from_camera(0, 2) = view.shift_x;
-    clip_from_camera(1, 2) = view.shift_y;
-    clip_from_camera(2, 2) = -middle;
-    clip_from_camera(2, 3) = endless ? -2.0 * view.near : -2.0 * view.far * view.near / depth;
-    clip_from_camera(3, 2) = -1.0;
-    clip_from_camera(3, 3) = 0.0;
+    clip_from_view(0, 0) = 1.0 / (view.tan_half_fovy * view.aspect);
+    clip_from_view(1, 1) = 1.0 / view.tan_half_fovy;
+    clip_from_view(0, 2) = view.shift_x;
+    clip_from_view(1, 2) = view.shift_y;
+    clip_from_view(2, 2) = -middle;
+    clip_from_view(2, 3) = endless ? -2.0 * view.near : -2.0 * view.far * view.near / depth;
+    clip_from_view(3, 2) = -1.0;
+    clip_from_view(3, 3) = 0.0;
   }
-  return clip_from_camera * camera_from_scene;
+  return clip_from_view * view_from_scene;
 }
 
 Frustum frustumOf(const View& given) {

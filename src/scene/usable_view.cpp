@@ -25,7 +25,7 @@ const char* projectionFault(const View& view) {
     return "View::aspect (width / height) must be greater than 0 and finite";
   }
   const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
-  if (!(std::isfinite(view.shift_x) && std::isfinite(view.shift_y) && shift <= View::kLargestShift)) {
+  if (!(std::isfinite(view.shift_x) && std::isfinite(view.shift_y) && shift <= View::kMaxShift)) {
     return "View::shift_x and shift_y must be from -1000 to 1000 half widths and half heights of the view";
   }
   const double height = (view.orthographic ? view.ortho_height : view.tan_half_fovy) * (1.0 + shift);

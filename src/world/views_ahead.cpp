@@ -22,8 +22,8 @@ double wider(double tangent, double angle) {
 }  // namespace
 
 void viewsAhead(const View& view, const CameraMotion& motion, double seconds, std::span<View> views) {
-  const double rate = length(motion.turn);
-  const Vec3d axis = normalized(motion.turn);
+  const double rate = length(motion.turn_rad_per_s);
+  const Vec3d axis = normalized(motion.turn_rad_per_s);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const double step = seconds / static_cast<double>(views.size());
     const double time = step * static_cast<double>(i + 1);

@@ -132,13 +132,13 @@ DepthBufferView WorldCuller::depthBuffer() const {
   return impl_->eyes[0].pyramid().depthBuffer();
 }
 
-Visibility WorldCuller::classify(const Box& box) const {
+Visibility WorldCuller::classify(const Box& box_from_origin) const {
   if (impl_->counts.view_fault != nullptr) {
     return Visibility::kPartial;
   }
   Visibility best = Visibility::kHidden;
   for (std::size_t i = 0; i < impl_->views.size(); ++i) {
-    best = std::max(best, impl_->eyes[i].classify(box));
+    best = std::max(best, impl_->eyes[i].classify(box_from_origin));
   }
   return best;
 }

@@ -69,13 +69,13 @@ WorldSight::~WorldSight() = default;
 WorldSight::WorldSight(WorldSight&&) noexcept = default;
 WorldSight& WorldSight::operator=(WorldSight&&) noexcept = default;
 
-Visibility WorldSight::look(const World& world, const Vec3d& from, const Box& box,
+Visibility WorldSight::look(const World& world, const Vec3d& from_world, const Box& box_from_origin,
                             std::span<const InstanceId> ignored) {
   View view;
-  if (!aimAt(from, box, world.data_->origin, impl_->settings.near, view)) {
+  if (!aimAt(from_world, box_from_origin, world.data_->origin, impl_->settings.near, view)) {
     return Visibility::kPartial;
   }
-  return impl_->eye.look(*world.data_, view, box, ignored);
+  return impl_->eye.look(*world.data_, view, box_from_origin, ignored);
 }
 
 }  // namespace sightline

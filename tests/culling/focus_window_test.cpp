@@ -107,7 +107,7 @@ TEST(FocusWindow, CountsFinerPixelsBeyondTheBordersOfAPixel) {
 TEST(FocusWindow, IsNotPlacedWhereNoViewIsSoFarOffCentre) {
   Random random(3);
   View view = anyView(random);
-  view.shift_x = View::kLargestShift;
+  view.shift_x = View::kMaxShift;
   FocusWindow window;
   EXPECT_FALSE(window.place(view, kWidth, kHeight, {4, 4, 7, 7}, kFine, kFine));
   view.shift_x = 0.0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sightline/io/import.h"
+#include "sightline/scene/check_scene.h"
 
 namespace sightline::test {
 
@@ -34,14 +35,10 @@ inline bool isSound(const Scene& scene) {
   std::size_t next = 0;
   bool sound = scene.objects.size() == scene.object_names.size();
   for (const Object& object : scene.objects) {
-    sound = sound && object.first_index == next && object.index_count > 0 && object.index_count % 3 == 0 &&
-            object.material.value < scene.materials.size() && object.bounds.wellFormed();
+    sound = sound && object.first_index == next && object.index_count > 0 && object.bounds.wellFormed();
     next += object.index_count;
   }
-  for (const std::uint32_t index : scene.indices) {
-    sound = sound && index < scene.positions.size() && isFinite(scene.positions[index]);
-  }
-  return sound && next == scene.indices.size();
+  return sound && next == scene.indices.size() && checkScene(scene.view());
 }
 
 // Twice the area vector of a triangle: its direction is the front's.

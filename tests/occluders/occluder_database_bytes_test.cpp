@@ -21,7 +21,7 @@ inline void expectSamePlace(const OccluderDatabase& a, const OccluderDatabase& b
   EXPECT_EQ(a.cellRegion(place), b.cellRegion(place));
 }
 inline void expectSameMeasures(const OccluderDatabase& a, const OccluderDatabase& b) {
-  EXPECT_EQ(a.coveringAngle(), b.coveringAngle());
+  EXPECT_EQ(a.coveringAngleRad(), b.coveringAngleRad());
 }
 
 namespace {

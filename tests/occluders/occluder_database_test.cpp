@@ -110,7 +110,7 @@ double scoreOf(const OccluderSet& set, const Occluder& occluder, const OccluderD
     polygon_radius = std::max(polygon_radius, length(Vec3d(vertex) - centroid));
   }
   radius += polygon_radius;
-  const double w = database.coveringAngle();
+  const double w = database.coveringAngleRad();
   if (radius < length(to_polygon) &&
       angleBetween(to_polygon, direction) >
           settings.view_angle_deg * kPi / 360.0 + w + std::asin(radius / length(to_polygon))) {
@@ -394,7 +394,7 @@ TEST(OccluderDatabaseDirections, AreEvenlySpread) {
     EXPECT_LT(largest / smallest, 1.6) << count;  // of the distances to the nearest
     EXPECT_LT(length(sum) / count, 0.1) << count;
     // A hexagonal grid of as many points, the most even one, has about 1.9 / sqrt(count).
-    EXPECT_LT(database.coveringAngle(), 3.3 / std::sqrt(count)) << count;
+    EXPECT_LT(database.coveringAngleRad(), 3.3 / std::sqrt(count)) << count;
   }
 }
 
@@ -408,8 +408,8 @@ TEST(OccluderDatabaseDirections, NoneIsFartherFromItsNearestThanTheCoveringAngle
       largest = std::max(largest,
                          angleBetween(direction, database.direction(database.nearestDirection(direction))));
     }
-    EXPECT_LE(largest, database.coveringAngle()) << count;
-    EXPECT_GT(largest, database.coveringAngle() - 0.1 / std::sqrt(count)) << count;
+    EXPECT_LE(largest, database.coveringAngleRad()) << count;
+    EXPECT_GT(largest, database.coveringAngleRad() - 0.1 / std::sqrt(count)) << count;
   }
 }
 

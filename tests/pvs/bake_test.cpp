@@ -378,12 +378,12 @@ TEST(Bake, CountsTheCellsWithViewersUnlessTheyAreTooMany) {
     });
   }
   EXPECT_GT(count, 20u);
-  EXPECT_EQ(bake->mostCells(), count);
+  EXPECT_EQ(bake->maxCells(), count);
   // All cells of the cube meet viewers, and 8^7 = 2,097,152 are as many as are counted.
   const std::vector<Box> all{{{0, 0, 0}, {33, 33, 33}}};
-  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 7, .viewers = all})->mostCells(),
-            Bake::kMostCounted);
-  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 8, .viewers = all})->mostCells(), std::nullopt);
+  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 7, .viewers = all})->maxCells(),
+            Bake::kMaxCounted);
+  EXPECT_EQ(Bake::plan(scene.view(), occluders, {.max_depth = 8, .viewers = all})->maxCells(), std::nullopt);
 }
 
 TEST(Bake, WithFewerPlacesForViewersChoosesSmallerCells) {

@@ -136,7 +136,7 @@ TEST(ValidateView, NamesTheMemberThatMakesNoView) {
   for (const double bad : {1000.001, -1001.0, 1e300, kNan, kInfinite, -kInfinite}) {
     for (double View::*shift : {&View::shift_x, &View::shift_y}) {
       View view = good;
-      view.*shift = View::kLargestShift;
+      view.*shift = View::kMaxShift;
       EXPECT_TRUE(validate(view));
       view.*shift = bad;
       expectError(view, "View::shift_x and shift_y");

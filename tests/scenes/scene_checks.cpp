@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "sightline/scene/check_scene.h"
+
 namespace sightline::scene_checks {
 namespace {
 
@@ -111,20 +113,16 @@ std::string whatIsWrong(const Scene& scene) {
       return "a position is not finite";
     }
   }
+  if (const Status status = checkScene(scene.view()); !status) {
+    return status.error().message;
+  }
+  Scene exact = scene;
+  updateBounds(exact);
   std::uint64_t next = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    Box bounds;
-    for (std::uint32_t k = 0; k < object.index_count; ++k) {
-      const std::uint32_t index = scene.indices[object.first_index + k];
-      if (index >= scene.positions.size()) {
-        return scene.object_names[i] + ": index out of range";
-      }
-      bounds.extend(scene.positions[index]);
-    }
-    if (object.first_index != next || object.index_count == 0 || object.index_count % 3 != 0 ||
-        object.material.value >= scene.materials.size() || bounds != object.bounds || !bounds.wellFormed()) {
-      return scene.object_names[i] + ": indices, material or bounds";
+    if (object.first_index != next || object.index_count == 0 || object.bounds != exact.objects[i].bounds) {
+      return scene.object_names[i] + ": indices or bounds";
     }
     next += object.index_count;
   }

@@ -437,7 +437,7 @@ TEST(Bake, RefusesValuesOutOfRange) {
       {"--search-distance", {"-1", "nan"}},
       {"--occluder-size", {"-1", "nan"}},
       {"--similarity", {"-0.1", "1.5", "nan"}},
-      {"--least-gain", {"-0.1", "1.5", "nan"}},
+      {"--min-gain", {"-0.1", "1.5", "nan"}},
       {"--merge-tolerance", {"-0.1", "nan"}},
       {"--sample-memory", {"-1", "x", "99999999"}},
       {"--region",

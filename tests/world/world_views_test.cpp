@@ -300,7 +300,7 @@ TEST(WorldViews, WhatWillBeSeenIsForeseen) {
 TEST(WorldViews, AViewAheadHasWhatTheCameraTurnsTo) {
   const View view = viewFrom({0, 0, 0}, {0, 0, -1});
   std::array<View, 5> views;
-  viewsAhead(view, {.turn = {0, 2.0, 0}, .spread = 1.0}, 0.5, views);
+  viewsAhead(view, {.turn_rad_per_s = {0, 2.0, 0}, .spread = 1.0}, 0.5, views);
   // Two radians a second to the left make one radian in half a second.
   EXPECT_NEAR(views[4].forward.x, -std::sin(1.0), 1e-12);
   EXPECT_NEAR(views[4].forward.z, -std::cos(1.0), 1e-12);
@@ -315,7 +315,7 @@ TEST(WorldViews, AViewAheadHasWhatTheCameraTurnsTo) {
   viewsAhead(wide, {.spread = 2.0}, 0.5, views);
   EXPECT_EQ(views[4].ortho_height, wide.ortho_height + 2.0);
   wide.orthographic = false;
-  viewsAhead(wide, {.turn = {5, 5, 5}}, 0.5, views);
+  viewsAhead(wide, {.turn_rad_per_s = {5, 5, 5}}, 0.5, views);
   EXPECT_GE(views[0].tan_half_fovy, 20.0 - 1e-9);
   viewsAhead(view, {}, 0.5, {});
 }

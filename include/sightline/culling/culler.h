@@ -40,6 +40,17 @@ struct CullerSettings {
   std::uint32_t views_at_once = 1;
 };
 
+// Culls a scene, frame after frame, by one method.
+//
+// Conservative: cull() keeps whatever can be seen (docs/conservative.md), with any method and any settings
+// but two: RasterSettings::coverage and OpacityMapSettings::tolerance, which are for comparison. A scene
+// whose cracks were closed, with closeCracks(), relaxes it by the width of these.
+//
+// For one thread at a time. Several cullers may cull one scene at the same time, each with VisibleSets of its
+// own. The scene and its parts outlive the culler and change only together with reset().
+//
+// Answers, spans and the depth buffer included, are those of the last cull() and valid until the next one or
+// reset(), or until the culler is destroyed.
 class Culler {
  public:
   // Where the hierarchy is not of the scene's boxes, because it names other objects or a box lies outside the
@@ -55,12 +66,13 @@ class Culler {
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;
 
-  // One frame. dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them.
-  // Does not fail, and does not allocate after a few frames; with a view that validate() refuses, everything
-  // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), in scene space,
-  // all of which are used in addition by all methods that have occluders. They need to outlive the call only.
-  // moving_surfaces: whole surfaces that move, drawn by the methods that draw surfaces, whether the scene has
-  // a SurfaceSet or not, unless the method is set to draw none.
+  // One frame; view, boxes and occluders are in scene space. Does not fail, and does not allocate after a few
+  // frames; with a view that validate() refuses, everything is visible (CullStats::view_fault).
+  // dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them. moving:
+  // occluders of this frame only (makeOccluders), all of which are used in addition by all methods that have
+  // occluders. They need to outlive the call only. moving_surfaces: whole surfaces that move, drawn by the
+  // methods that draw surfaces, whether the scene has a SurfaceSet or not, unless the method is set to draw
+  // none.
   void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr,
             std::span<const MovingSurfaces> moving_surfaces = {});
 

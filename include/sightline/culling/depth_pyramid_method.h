@@ -46,8 +46,8 @@ inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};
 // Culling by a DepthPyramid of whole surfaces, or of the chosen occluders where the scene has none: all
 // children of a node are compared with it at once. The surfaces of a frame are those of the objects that the
 // last frame kept. Statistics: "map" with occluders_hidden, the occluders behind others, focused, the
-// windows with finer depth buffers, focus_hidden, the objects that these hid, and what was drawn of surfaces:
-// groups, and edges of their boundaries.
+// windows with finer depth buffers, and focus_hidden, the objects that these hid; "surfaces" with what was
+// drawn of them: groups, and edges of their boundaries.
 std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings = {});
 
 }  // namespace sightline

@@ -40,7 +40,8 @@ namespace layers {
 struct PartStore;
 }
 
-// Factories, called once by each LayerSorter made with them. sightline/comparison/layer_sorting.h has some.
+// Factories, called once by each LayerSorter made with them. sightline/comparison/layer_sorting.h (not
+// installed) has some.
 using MakeLayerSort = std::function<std::unique_ptr<LayerSortAlgorithm>()>;
 using MakeCandidateSearch = std::function<std::unique_ptr<CandidateSearch>()>;
 
@@ -179,8 +180,8 @@ class LayerSorter {
   // the place of another, or of a piece of it.
   void copyRules(PartId from, PartId to);
 
-  // Builds what the search keeps between frames anew, at once (the tree of extentTree()); call it after
-  // update(). Does nothing with the default search.
+  // Builds what the search keeps between frames anew, at once (the tree of extentTree(), not installed); call
+  // it after update(). Does nothing with the default search.
   void rebuildSearch();
   // Forgets the last order, so that the next one starts from distances. For a cut to another view.
   void reset();

@@ -83,7 +83,7 @@ class OccluderDatabase final : public OccluderLists {
   // zero and what is not finite: 0.
   std::uint32_t nearestDirection(const Vec3d& direction) const;
   // Bounds the angle between any direction and its nearest stored one, radians.
-  double coveringAngle() const;
+  double coveringAngleRad() const;
 
   std::size_t bytes() const;  // of memory
 

@@ -18,7 +18,8 @@
 
 namespace sightline {
 
-// A convex polygon, counter-clockwise seen from its front. Its boundary runs along edges of the mesh.
+// A convex polygon, counter-clockwise seen from its front, as triangles of a SceneView are. Its boundary runs
+// along edges of the mesh.
 struct Occluder {
   std::uint32_t first_vertex = 0;  // into OccluderSet::vertices and OccluderSet::edges
   std::uint16_t vertex_count = 0;
@@ -177,7 +178,11 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
 
 // A polygon that the caller gives: it has to be drawn and opaque, or what lies behind it is wrongly hidden.
 struct OccluderPolygon {
-  std::span<const Vec3f> vertices{};  // scene space, counter-clockwise from the front, convex, in one plane
+  // Scene space, convex, in one plane. The front is the side to which cross(b - a, c - a) points, for
+  // consecutive vertices a, b and c that are not in one line. In a left-handed space that is the side from
+  // which the polygon appears clockwise: reverse the order of vertices if your fronts are counter-clockwise
+  // there.
+  std::span<const Vec3f> vertices{};
   bool double_sided = false;
   // The object that shows this polygon, any number: OccluderChooser, and so a Culler, looks for occluders
   // among the objects in view. ObjectId(): none. Such an occluder is used only where the caller names it, as

@@ -22,7 +22,8 @@ struct RasterBand;
 }  // namespace occlusion
 
 // A way to decide which pixels polygons cover, in place of the conservative one; such as centreCoverage() of
-// sightline/comparison/centre_coverage.h. Private headers of the library define its arguments.
+// sightline/comparison/centre_coverage.h (not installed). Implemented in the library only: private headers
+// define its arguments.
 class CoverageRule {
  public:
   // Draws polygons into a band of rows. Polygons are given as they are, each alone: bodies are not drawn as

@@ -11,7 +11,8 @@
 
 namespace sightline {
 
-// A viewpoint with its projection, in scene space. The camera looks along `forward`. See validate().
+// A viewpoint with its projection, in the space of what is seen: scene space for a scene, so for a Culler,
+// and world space for a World. The camera looks along `forward`. See validate().
 struct View {
   Vec3d eye{};
   Vec3d right{}, up{}, forward{};  // orthonormal, right-handed: forward = up x right
@@ -21,11 +22,11 @@ struct View {
   double ortho_height = 10.0;
   double aspect = 16.0 / 9.0;  // width / height
   // Where the middle of the picture lies off the forward axis: half widths to the right and half heights up,
-  // at most kLargestShift. Both are 0 in a symmetric view. With 1, the axis is at the left or lower border of
+  // at most kMaxShift. Both are 0 in a symmetric view. With 1, the axis is at the left or lower border of
   // the picture; beyond, outside of it. In the terms of glFrustum() and glOrtho(), shift_x is (right + left)
   // / (right - left), and shift_y is (top + bottom) / (top - bottom).
   double shift_x = 0.0, shift_y = 0.0;
-  static constexpr double kLargestShift = 1000.0;
+  static constexpr double kMaxShift = 1000.0;
   double near = 0.1;    // metres along forward, >= 0
   double far = 1000.0;  // metres along forward, > near; may be infinite
 };
@@ -41,13 +42,14 @@ Result<View> validate(const View& view);
 // Sets right and up from any forward and up hint, even if they are parallel.
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint);
 
-// OpenGL's clip space: x, y, z in [-w, w], z = -w on the near plane. The view must be one that validate()
-// accepts. If far is infinite, points at infinity have z = w. A depth buffer then cannot distinguish depths
-// in an orthographic view; nor can it in any view with near = 0.
+// OpenGL's clip space, from the view's own space: x, y, z in [-w, w], z = -w on the near plane. Of a view in
+// world space this is clip_from_world. The view must be one that validate() accepts. If far is infinite,
+// points at infinity have z = w. A depth buffer then cannot distinguish depths in an orthographic view; nor
+// can it in any view with near = 0.
 Mat4 clipFromScene(const View& view);
 
-// The six frustum planes of the view, in scene space. For a view that validate() rejects: planes that contain
-// all of space.
+// The six frustum planes of the view, in its own space. For a view that validate() rejects: planes that
+// contain all of space.
 Frustum frustumOf(const View& view);
 
 // Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a
@@ -71,7 +73,8 @@ struct CameraPath {
   double near = 0.1, far = 2000.0;           // metres
   std::vector<CameraFrame> frames{};
 
-  // The view of one frame, in the scene space of a scene with this origin.
+  // The view of one frame, in the scene space of a scene with this origin; with {}, in world space, as a
+  // World needs it.
   View view(std::size_t frame, const Vec3d& scene_origin) const;
 };
 

@@ -29,15 +29,24 @@ enum class OccluderMark : std::uint8_t {
 struct Object {
   std::uint32_t first_index = 0;  // into Scene::indices
   std::uint32_t index_count = 0;  // three per triangle
-  MaterialId material{};
+  MaterialId material{};          // must be set: see SceneView
   OccluderMark mark = OccluderMark::kAutomatic;
   Box bounds{};  // of its vertices, scene space; may be wider, as in a ClosedScene
 
   std::uint32_t triangleCount() const { return index_count / 3; }
 };
 
-// Views of the caller's own memory, all in scene space: the input of the library's functions. Triangles are
-// counter-clockwise as seen from their front.
+// Views of the caller's own memory, all in scene space: the input of the library's functions.
+//
+// The front of a triangle (a, b, c) is the side to which cross(b - a, c - a) points. In a left-handed space
+// that is the side from which it appears clockwise: reverse the order of vertices if your fronts are
+// counter-clockwise there.
+//
+// Preconditions of all functions that take a SceneView, none of which checks them; checkScene() does:
+// - every index of an object is below positions.size();
+// - of every object, first_index + index_count is at most indices.size(), and index_count a multiple of 3;
+// - every object's material is valid and below materials.size(): a default Object has none;
+// - every object's bounds hold all of its vertices (updateBounds()).
 struct SceneView {
   std::span<const Vec3f> positions{};
   std::span<const std::uint32_t> indices{};  // into positions

@@ -24,11 +24,12 @@ struct ClipSpace {
 };
 
 // Returns the view of a projection matrix times a view matrix:
-// `viewFromClip(clip_from_view * view_from_scene, {...})`. The matrix transforms points of scene space, given
-// as columns (see Mat4), to clip space, where a point is inside if |x| <= w, |y| <= w, and z is between its
-// values on the near and on the far plane. Perspective and orthographic, off-centre and jittered projections
-// are views, also with an infinite far distance, of either handedness, and with a view matrix that scales.
-// Without y_down a matrix of Vulkan gives the same frustum, with the view upside down.
+// `viewFromClip(clip_from_view * view_from_scene, {...})`. The matrix transforms points of scene space, or of
+// world space, in which the view then is, given as columns (see Mat4), to clip space, where a point is inside
+// if |x| <= w, |y| <= w, and z is between its values on the near and on the far plane. Perspective and
+// orthographic, off-centre and jittered projections are views, also with an infinite far distance, of either
+// handedness, and with a view matrix that scales. Without y_down a matrix of Vulkan gives the same frustum,
+// with the view upside down.
 //
 // The matrix is taken as exact; so are matrices of single precision. The sides of the frustum are those of
 // the matrix to within 1e-12 of the distance from the eye and of the eye's coordinates. The far plane is
@@ -39,8 +40,11 @@ struct ClipSpace {
 // on the middle of the near plane, so that near and both shifts are 0. Otherwise the result is the inverse of
 // clipFromScene().
 //
-// Give the right ClipSpace::depth: only planes in the wrong order are noticed. A matrix of OpenGL that is
-// read as kZeroToOne, for example, is that of another view, with a near plane farther away.
+// Give the right ClipSpace::depth: only planes in the wrong order are noticed. With a wrong one the view has
+// another near plane. A matrix of OpenGL that is read as kZeroToOne has it about twice as far away, and
+// objects before it are culled although they are visible; a matrix of Direct3D that is read as
+// kMinusOneToOne has it nearer, and what the program's near plane clips hides what is behind it. So compare
+// view->near with the program's own distance once. A wrong y_down only turns the view upside down.
 //
 // The error says what is wrong: the matrix is not finite or not a projection, the near plane is tilted
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at
@@ -50,7 +54,7 @@ Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_spa
 // A perspective view whose near plane is tilted, as those of mirrors and portals are.
 struct ObliqueView {
   View view{};         // near: of the nearest point that is drawn; far: infinite
-  Plane near_plane{};  // unit normal, towards what is drawn; scene space
+  Plane near_plane{};  // unit normal, towards what is drawn; in the space of the view
 };
 
 // The same for such a matrix (E. Lengyel. Oblique View Frustum Depth Projection and Clipping. Journal of Game

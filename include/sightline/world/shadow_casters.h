@@ -50,6 +50,7 @@ class ShadowCasters {
   // or of several views, since the world was changed.
   void cull(const World& world, const View& light, const WorldCuller& seen);
 
+  // Answers of the last cull(). Spans are valid until the next one, or until this is destroyed.
   std::span<const InstanceId> casters() const;  // ascending
   // Instance i is bit i % 64 of word i / 64, as in WorldCuller::visibleBits().
   std::span<const std::uint64_t> casterBits() const;

@@ -9,9 +9,9 @@
 namespace sightline {
 
 struct CameraMotion {
-  Vec3d velocity{};     // metres a second, world space
-  Vec3d turn{};         // radians a second, about this axis, counter-clockwise as seen from its tip
-  double spread = 0.0;  // metres a second by which the velocity may be another one
+  Vec3d velocity{};        // metres a second, world space
+  Vec3d turn_rad_per_s{};  // about this axis, counter-clockwise as seen from its tip
+  double spread = 0.0;     // metres a second by which the velocity may be another one
 };
 
 // Sets the views to those that the camera will have within `seconds`, evenly spaced, the last one at their
@@ -19,7 +19,7 @@ struct CameraMotion {
 // middle of the depths in view; more than about 75 degrees to a side are not taken in.
 //
 //   std::array<View, 3> views;
-//   viewsAhead(view, {.velocity = velocity, .turn = turn}, 0.5, views);
+//   viewsAhead(view, {.velocity = velocity, .turn_rad_per_s = turn}, 0.5, views);
 //   ahead.cull(world, views);  // a WorldCuller of its own
 //   // what is in ahead.visible() and not in culler.visible() is what to fetch next
 //

@@ -5,7 +5,9 @@
 // A renderer tells a World what there is, and asks a WorldCuller, one for each view, what may be seen:
 //
 //   World world;
-//   const MeshId crate = world.addMesh(*makeMesh(mesh));                  // once a mesh
+//   Result<WorldMesh> made = makeMesh(mesh);                              // once a mesh
+//   if (!made) ... made.error().message
+//   const MeshId crate = world.addMesh(std::move(*made));
 //   const InstanceId one = world.add({crate, world_from_mesh});           // at any time
 //   world.setTransform(one, elsewhere);
 //   world.tidy();                                                         // once a frame
@@ -33,12 +35,13 @@ namespace world {
 struct WorldData;
 }
 
-using MeshId = Id<struct MeshTag>;  // of a World
-// An instance of a World. It stays the same as long as the instance is there; afterwards the next one that is
-// added may have it.
+// Of a World. Ids of meshes, instances and joins stay the same as long as these are there; after
+// removeMesh(), remove() or drop(), the next one that comes may have the same id. So forget an id together
+// with what it names.
+using MeshId = Id<struct MeshTag>;
 using InstanceId = Id<struct InstanceTag>;
-using JoinId = Id<struct JoinTag>;  // of a World
-using SetsId = Id<struct SetsTag>;  // of a World
+using JoinId = Id<struct JoinTag>;
+using SetsId = Id<struct SetsTag>;  // of a World; never given again
 
 struct Instance {
   MeshId mesh{};

@@ -46,7 +46,9 @@ struct WorldCullStats {
 
 // Culls a World for one view, frame after frame. Each view of a frame (the camera's, cascades of shadows,
 // reflections) has a culler of its own, and several cullers may cull one world at the same time.
-// Conservative: whatever can be seen is kept. What hides is what hid something or was kept in the frame
+//
+// Conservative: whatever can be seen is kept. One exception, only with joins (World::prepareJoin): see
+// WorldCullerSettings::join_rounding; 0 removes it. What hides is what hid something or was kept in the frame
 // before, and what is found not to be hidden in this one, each as far as it is there and where it is now,
 // never where it was.
 //
@@ -74,7 +76,10 @@ class WorldCuller {
   // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
   void useSets(SetsId id, VisibleSets* sets);
 
-  // Answers of the last cull(). Instances that may be seen, ascending.
+  // Answers of the last cull(). Spans, and depthBuffer(), are valid until the next cull() or reset(), or
+  // until the culler is destroyed; changes of the world leave them as they are.
+  //
+  // Instances that may be seen, ascending.
   std::span<const InstanceId> visible() const;
   // The same as a set of bits: instance i is bit i % 64 of word i / 64. As many words as World::idBound()
   // needs. Uploaded as it is, it is bit i % 32 of word i / 32 to a shader (of a little-endian machine).
@@ -88,9 +93,10 @@ class WorldCuller {
   const WorldCullStats& stats() const;
   DepthBufferView depthBuffer() const;  // of the first view
 
-  // Whether a box, relative to World::origin(), of something that is no instance, may be seen in one of the
-  // views: kHidden also means outside of them. Several threads may ask at the same time.
-  Visibility classify(const Box& box) const;
+  // Whether a box of something that is no instance may be seen in one of the views: kHidden also means
+  // outside of them. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
+  // Several threads may ask at the same time.
+  Visibility classify(const Box& box_from_origin) const;
 
  private:
   friend class ShadowCasters;

@@ -40,14 +40,15 @@ struct MeshSettings {
   // other: each level of detail, each pose (checkInside()). It hides nothing where the near plane may cut the
   // drawn mesh open, and is in no join. Read during the call only.
   const MeshView* occluder = nullptr;
-  // Not empty: all that is ever drawn lies in this box or in that of the mesh (levels of detail, poses).
+  // Not empty: all that is ever drawn lies in this box, in the mesh's space, or in that of the mesh (levels
+  // of detail, poses).
   Box drawn_bounds{};
   SurfaceSettings surfaces{};
 };
 
 // Made by makeMesh() and not to be changed by hand.
 struct WorldMesh {
-  Box bounds{};                 // of all triangles; not well formed if one of them is not finite
+  Box bounds{};                 // of all triangles, in the mesh's space; not well formed if one is not finite
   SurfaceSet surfaces{};        // empty if the mesh never hides anything
   std::uint32_t triangles = 0;  // of the drawn mesh
   bool has_occluder = false;    // MeshSettings::occluder was given

@@ -34,9 +34,10 @@ class WorldSight {
   WorldSight(WorldSight&&) noexcept;
   WorldSight& operator=(WorldSight&&) noexcept;
 
-  // from: world space. box: relative to World::origin(), as World::boundsOf() gives it. ignored: these hide
-  // nothing, as the one who looks and what is looked for.
-  Visibility look(const World& world, const Vec3d& from, const Box& box,
+  // The point and the box are in different spaces. from_world: world space. box_from_origin: world space less
+  // World::origin(), as World::boundsOf() gives it. ignored: these hide nothing, as the one who looks and
+  // what is looked for.
+  Visibility look(const World& world, const Vec3d& from_world, const Box& box_from_origin,
                   std::span<const InstanceId> ignored = {});
 
  private:

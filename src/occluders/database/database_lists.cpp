@@ -98,7 +98,7 @@ ListFinder::ListFinder(const CandidateTree& tree, const occluders::SphereDirecti
                        const ListSettings& settings)
     : tree_(tree), directions_(directions), settings_(settings), best_(directions.count()) {
   const double view_angle = settings.view_angle_deg > 0.0 ? std::min(settings.view_angle_deg, 360.0) : 0.0;
-  const double covering = directions.coveringAngle();
+  const double covering = directions.coveringAngleRad();
   const double cone = std::min(std::numbers::pi, view_angle * std::numbers::pi / 360.0 + covering);
   cos_cone_ = std::cos(cone);
   sin_cone_ = std::max(0.0, std::sin(cone));

@@ -121,8 +121,8 @@ std::uint32_t OccluderDatabase::nearestDirection(const Vec3d& direction) const {
   return data_ ? data_->directions.nearest(direction) : 0;
 }
 
-double OccluderDatabase::coveringAngle() const {
-  return data_ ? data_->directions.coveringAngle() : std::numbers::pi;
+double OccluderDatabase::coveringAngleRad() const {
+  return data_ ? data_->directions.coveringAngleRad() : std::numbers::pi;
 }
 
 std::size_t OccluderDatabase::bytes() const {

@@ -27,7 +27,7 @@ class SphereDirections {
 
   // Bounds the angle between any direction and its nearest one, in radians. The bound is too large by at most
   // 2 % of 2 / sqrt(count).
-  double coveringAngle() const { return covering_angle_; }
+  double coveringAngleRad() const { return covering_angle_; }
 
   std::size_t bytes() const;  // beside the object itself
 

@@ -31,8 +31,8 @@ struct Bake::Data {
   Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
        const ParallelFor& parallel_for)
       : scene(view, occluders, settings, parallel_for), scene_id(sceneId(view)) {
-    if (const std::uint64_t count = scene.mostLeaves({}, kMostCounted + 1); count <= kMostCounted) {
-      most_cells = count;
+    if (const std::uint64_t count = scene.mostLeaves({}, kMaxCounted + 1); count <= kMaxCounted) {
+      max_cells = count;
     }
   }
 
@@ -41,7 +41,7 @@ struct Bake::Data {
 
   BakeScene scene;
   SceneId scene_id;
-  std::optional<std::uint64_t> most_cells;  // Bake::mostCells
+  std::optional<std::uint64_t> max_cells;  // Bake::maxCells
   std::uint64_t hash = 0;
 };
 
@@ -99,7 +99,7 @@ std::string problemWith(const BakeSettings& s) {
   }
   if (!usable(s.similarity, 0.0, 1.0) || !usable(s.min_gain, 0.0, 1.0) ||
       !usable(s.merge_tolerance, 0.0, 1e6)) {
-    return "similarity and least_gain are from 0 to 1, merge_tolerance is 0 or greater";
+    return "similarity and min_gain are from 0 to 1, merge_tolerance is 0 or greater";
   }
   if (s.divisions > kMaxDivisions) {
     return "divisions is " + std::to_string(s.divisions) + "; at most " + std::to_string(kMaxDivisions);
@@ -194,9 +194,9 @@ double shareOfRegion(const BakeScene& scene, const OctreeCell& cell) {
 }  // namespace
 
 double Bake::Data::shareOf(const OctreeCell& cell) const {
-  return most_cells ? static_cast<double>(scene.mostLeaves(cell, kMostCounted)) /
-                          static_cast<double>(std::max<std::uint64_t>(*most_cells, 1))
-                    : shareOfRegion(scene, cell);
+  return max_cells ? static_cast<double>(scene.mostLeaves(cell, kMaxCounted)) /
+                         static_cast<double>(std::max<std::uint64_t>(*max_cells, 1))
+                   : shareOfRegion(scene, cell);
 }
 
 Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings,
@@ -240,8 +240,8 @@ std::uint32_t Bake::baseDepth() const {
 const OccluderCounts& Bake::occluders() const {
   return data_->scene.counts;
 }
-std::optional<std::uint64_t> Bake::mostCells() const {
-  return data_->most_cells;
+std::optional<std::uint64_t> Bake::maxCells() const {
+  return data_->max_cells;
 }
 std::uint64_t Bake::hash() const {
   return data_->hash;

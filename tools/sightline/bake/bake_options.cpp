@@ -96,7 +96,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       "its volume so many times the cell's");
   addDecimalOption(command, "--similarity", settings.similarity, 0.0, 1.0,
                    "a cell is divided where some point of it sees less than the cell by this part");
-  addDecimalOption(command, "--least-gain", settings.min_gain, 0.0, 1.0,
+  addDecimalOption(command, "--min-gain", settings.min_gain, 0.0, 1.0,
                    "occluders are looked for twice as far as long as that hides this part of the triangles");
   addDecimalOption(command, "--merge-tolerance", settings.merge_tolerance, 0.0, kMax,
                    "eight cells become one that sees at most this part more than each");
@@ -206,7 +206,7 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                {"search_distance", settings.search_distance},
                {"occluder_size", settings.occluder_size},
                {"similarity", settings.similarity},
-               {"least_gain", settings.min_gain},
+               {"min_gain", settings.min_gain},
                {"merge_tolerance", settings.merge_tolerance},
                {"occluders",
                 {{"all", occluders.all},

@@ -289,9 +289,9 @@ class FirstBaker {
 
   // How many cells the bake has, as the beginning of a line.
   std::string cellsText() const {
-    const std::optional<std::uint64_t> cells = bake_.mostCells();
+    const std::optional<std::uint64_t> cells = bake_.maxCells();
     return cells ? fmt::format("viewers are in {} cells at most; ", *cells)
-                 : fmt::format("viewers may be in more than {} cells; ", Bake::kMostCounted);
+                 : fmt::format("viewers may be in more than {} cells; ", Bake::kMaxCounted);
   }
 
   std::string note() const {

@@ -231,22 +231,23 @@ const std::vector<Option>& allOptions() {
       {"variant", kOwn, always, kList, kHeadline, "of the occlusion tree",
        oneOf(
            kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.variant; })},
-      {"resolution", kOwn, always, kList, kHeadline, "of the map of occluders",
+      {"resolution", kOwn, always, kList, kHeadline, "of the depth buffer of occluders",
        resolution(+[](Setting& s) -> RasterSettings& { return s.raster; })},
       {"coverage", kOwn, always, kList, kWhenChanged,
        "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
        oneOf(
            kCoverages, +[](Setting& s) -> const CoverageRule*& { return s.raster.coverage; })},
       {"focus", kOwn, mayFocus, kList, kWhenChanged,
-       "depth pyramid: magnification of finer maps where the first one leaves objects in doubt; 0: none",
+       "depth pyramid: magnification of finer depth buffers where the first one leaves objects in doubt; 0: "
+       "none",
        decimal(+[](Setting& s) -> double& { return s.focus.magnification; })},
-      {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of each finer map",
+      {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of each finer depth buffer",
        resolution(+[](Setting& s) -> RasterSettings& { return s.focus.raster; })},
-      {"focus-windows", kOwn, focuses, kList, kWhenChanged, "most finer maps in a frame",
+      {"focus-windows", kOwn, focuses, kList, kWhenChanged, "maximum number of finer depth buffers per frame",
        whole(
            0, kMaxFocusWindows, +[](Setting& s) -> std::uint32_t& { return s.focus.windows; })},
       {"focus-worth", kOwn, focuses, kList, kWhenChanged,
-       "a finer map may cost so many times what the frame costs for each object that the map takes away",
+       "a finer depth buffer may cost so many times what the frame costs for each object that it takes away",
        decimal(+[](Setting& s) -> double& { return s.focus.worth; })},
       {"tolerance", kOwn, always, kList, kWhenChanged,
        "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
@@ -282,11 +283,11 @@ const std::vector<Option>& allOptions() {
        "surfaces are drawn as far as a frame takes about so many microseconds; what is kept then depends on "
        "measured times; 0: off",
        decimal(+[](Setting& s) -> double& { return s.budget_us; })},
-      {"occluder-count", kAny, choosesOccluders, kList, kHeadline, "most occluders in a frame",
+      {"occluder-count", kAny, choosesOccluders, kList, kHeadline, "maximum number of occluders per frame",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluders.count; })},
       {"focus-occluder-count", kOwn, focusesOccluders, kOne, kWhenChanged,
-       "most occluders that only a finer map has",
+       "maximum number of occluders that only a finer depth buffer has",
        whole(
            0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.occluder_count; })},
       {"planes", kOwn, always, kList, kWhenChanged,
@@ -312,7 +313,8 @@ const std::vector<Option>& allOptions() {
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.test_objects; })},
       {"object-boxes", kAny, testsObjects, kList, kWhenChanged,
-       "most boxes of an object, by which what was kept is tested again; 0: 8 with the depth pyramid, else 1",
+       "maximum number of boxes per object, by which what was kept is tested again; 0: 8 with the depth "
+       "pyramid, else 1",
        whole(
            0, kMaxObjectBoxes, +[](Setting& s) -> std::uint32_t& { return s.object_box_option; })},
       {"joint", kOwn, always, kList, kWhenChanged,
@@ -320,7 +322,7 @@ const std::vector<Option>& allOptions() {
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.kept_planes.joint_occlusion; })},
       {"relation-mib", kOwn, keepsRelations, kOne, kWhenChanged,
-       "supporting planes: most memory of kept relations",
+       "supporting planes: maximum memory of kept relations",
        mebibytes(+[](Setting& s) -> std::size_t& { return s.kept_planes.relation_bytes; })},
       {"tangents", kOwn, keepsPlanes, kOne, kWhenChanged, "supporting planes: how their vertices are found",
        oneOf(
@@ -329,7 +331,8 @@ const std::vector<Option>& allOptions() {
        "what was kept is tested again, with a database's occluders near itself",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.detail_objects; })},
-      {"detail-occluder-count", kAny, testsDetail, kOne, kWhenChanged, "most occluders in that second test",
+      {"detail-occluder-count", kAny, testsDetail, kOne, kWhenChanged,
+       "maximum number of occluders in that second test",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.detail.occluder_count; })},
       {"draw-object-us", kAny, usesOccluders, kOne, kWhenChanged,
@@ -344,10 +347,11 @@ const std::vector<Option>& allOptions() {
        whole(
            1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.database.directions; })},
       {"database-occluder-count", kAny, usesDatabase, kOne, kWhenChanged,
-       "occluder database: most occluders of a cell in a direction",
+       "occluder database: maximum number of occluders per cell and direction",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.database.occluder_count; })},
-      {"database-mib", kAny, usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
+      {"database-mib", kAny, usesDatabase, kOne, kWhenChanged,
+       "occluder database: maximum memory of its lists",
        mebibytes(+[](Setting& s) -> std::size_t& { return s.database.max_bytes; })},
       {"viewpoint-spacing", kAny, usesViewpoints, kOne, kWhenChanged,
        "viewpoint database: metres between grid points; 0: chosen",

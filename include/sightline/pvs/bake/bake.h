@@ -35,7 +35,7 @@ struct BakeSettings {
   // unless the settings say otherwise.
   static constexpr std::size_t kManyObjects = 20'000;
 
-  // Fused sets are smaller, and take some hundred times as long to bake.
+  // Fused sets are smaller, and take some fifty times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
   // Maximum number of bytes of the file, without its settings and occluder databases; 0: any. Of the cells
@@ -117,7 +117,7 @@ struct SightExtras {
 struct PartSummary {
   std::uint32_t leaves = 0;     // 0 if the part was divided into parts
   double mean_triangles = 0.0;  // mean over the leaves' sets
-  double share = 0.0;           // how much of the bake the leaves are, 0 to 1; see Bake::mostCells
+  double share = 0.0;           // how much of the bake the leaves are, 0 to 1; see Bake::maxCells
 };
 
 struct BakeStats {
@@ -160,10 +160,10 @@ class Bake {
   std::uint32_t baseDepth() const;
   const OccluderCounts& occluders() const;
   // How many cells hold viewers if all are divided that may be: the most that can be baked. Nothing if they
-  // are more than kMostCounted. PartSummary::share is the part of these cells that leaves are or, if they are
+  // are more than kMaxCounted. PartSummary::share is the part of these cells that leaves are or, if they are
   // not counted, the part of the viewing region.
-  static constexpr std::uint64_t kMostCounted = 1u << 21;
-  std::optional<std::uint64_t> mostCells() const;
+  static constexpr std::uint64_t kMaxCounted = 1u << 21;
+  std::optional<std::uint64_t> maxCells() const;
   // Identifies the plan: parts and checkpoints of one plan cannot be used with another.
   std::uint64_t hash() const;
 

@@ -18,6 +18,10 @@ struct SceneId {
 
 // Hashes positions, triangles and objects with their boxes, and materials and marks as far as they determine
 // what occludes. Names, colours and the origin do not count.
+//
+// The arrays are hashed as they lie in memory. The same model from another loader, which orders or welds
+// vertices in another way, is another scene: load it with the code that baked it (importScene() for files of
+// the tool), or bake the program's own SceneView (bakeVisibility()).
 SceneId sceneId(const SceneView& scene);
 
 // Hashes everything that gives OccluderIds their meaning: databases of occluders are valid only for equal

@@ -1,0 +1,75 @@
+#include "sightline/scene/check_scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace sightline {
+namespace {
+
+std::string coordinatesOf(const Vec3f& point) {
+  return "(" + std::to_string(point.x) + ", " + std::to_string(point.y) + ", " + std::to_string(point.z) +
+         ")";
+}
+
+bool holds(const Box& box, const Vec3f& point) {
+  return contains(box, Box{point, point});
+}
+
+// What is wrong with the numbers of the object itself; empty if nothing is.
+std::string faultOfNumbers(const SceneView& scene, const Object& object) {
+  const std::uint64_t end = std::uint64_t{object.first_index} + object.index_count;
+  if (end > scene.indices.size()) {
+    return "first_index + index_count is " + std::to_string(end) + ", but the scene has " +
+           std::to_string(scene.indices.size()) + " indices";
+  }
+  if (object.index_count % 3 != 0) {
+    return "index_count is " + std::to_string(object.index_count) + "; it must be a multiple of 3";
+  }
+  if (!object.material.valid()) {
+    return "it has no material; set Object::material";
+  }
+  if (object.material.value >= scene.materials.size()) {
+    return "its material is " + std::to_string(object.material.value) + ", but the scene has " +
+           std::to_string(scene.materials.size()) + " materials";
+  }
+  return {};
+}
+
+// What is wrong with its vertices, of an object whose own numbers are right; empty if nothing is.
+std::string faultOfVertices(const SceneView& scene, const Object& object) {
+  for (std::size_t i = object.first_index; i < std::size_t{object.first_index} + object.index_count; ++i) {
+    const std::uint32_t index = scene.indices[i];
+    if (index >= scene.positions.size()) {
+      return "indices[" + std::to_string(i) + "] is " + std::to_string(index) + ", but the scene has " +
+             std::to_string(scene.positions.size()) + " positions";
+    }
+    const Vec3f& position = scene.positions[index];
+    if (!isFinite(position)) {
+      return "position " + std::to_string(index) + " is not finite: " + coordinatesOf(position);
+    }
+    if (!holds(object.bounds, position)) {
+      return "its bounds do not hold position " + std::to_string(index) + ", " + coordinatesOf(position) +
+             "; updateBounds() makes them";
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status checkScene(const SceneView& scene) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    std::string fault = faultOfNumbers(scene, object);
+    if (fault.empty()) {
+      fault = faultOfVertices(scene, object);
+    }
+    if (!fault.empty()) {
+      return Error{"object " + std::to_string(i) + ": " + fault};
+    }
+  }
+  return Success{};
+}
+
+}  // namespace sightline
