@@ -12,7 +12,7 @@ using occlusion::PixelRange;
 namespace {
 
 // The same point lies in the two buffers at places that differ by rounding in double precision alone, less
-// than 2^-26 finer pixels for any window within View::kLargestShift. This is so much more that no bound of
+// than 2^-26 finer pixels for any window within View::kMaxShift. This is so much more that no bound of
 // the buffers is needed, pixels.
 constexpr double kMargin = 0x1p-16;
 

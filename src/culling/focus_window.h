@@ -23,7 +23,7 @@ class FocusWindow {
  public:
   // Places the window at these pixels of a view whose depth buffer has width x height of them. fine_width,
   // fine_height: pixels of the finer buffer. False: its pixels are too small, or it lies farther off-centre
-  // than View::kLargestShift, and there is no window.
+  // than View::kMaxShift, and there is no window.
   bool place(const View& whole, std::uint32_t width, std::uint32_t height, const occlusion::PixelRange& range,
              std::uint32_t fine_width, std::uint32_t fine_height);
   // Copies a depth buffer that was drawn for view().
