@@ -24,8 +24,14 @@ endif()
 set(SIGHTLINE_SANITIZE_FLAGS "")
 if(SIGHTLINE_SANITIZE)
   # AddressSanitizer sees the memory that a null or wrapped pointer touches, or one into a smaller object or another
-  # class's. Without a check of each pointer beside that, programs take a fifth less time.
-  set(SIGHTLINE_SANITIZE_FLAGS -fsanitize=address,undefined -fno-sanitize=null,pointer-overflow,object-size,vptr)
+  # class's. Without a check of each pointer beside that, programs take a third less time. That pointers are aligned is
+  # checked where bytes are read as objects: the readers of files are fuzzed with all checks.
+  set(SIGHTLINE_SANITIZE_FLAGS -fsanitize=address,undefined
+    -fno-sanitize=null,pointer-overflow,object-size,vptr,alignment)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # GCC's runtime finds no use of a variable after its function's return unless it is told to; nor need code for it.
+    list(APPEND SIGHTLINE_SANITIZE_FLAGS --param=asan-use-after-return=0)
+  endif()
 endif()
 
 function(sightline_options target)
