@@ -63,7 +63,7 @@ TEST(DoubtMemory, LetsWhatShowsInManyPixelsRestForTwentyViewsAlsoIfItWasHidden) 
     if (was_hidden) {
       memory.hidden(kObject);
     }
-    memory.clear(kObject);
+    memory.showsClearly(kObject);
     EXPECT_FALSE(memory.wasHidden(kObject));
     EXPECT_EQ(memory.chance(kObject), untried);
     const std::uint32_t views = viewsOfRest(memory, kObject);
@@ -77,7 +77,7 @@ TEST(DoubtMemory, KeepsWhatIsKnownOfAnObjectThatShowsInManyPixelsForAWhile) {
   memory.seen(kObject);
   memory.seen(kObject);
   const std::uint32_t chance = memory.chance(kObject);
-  memory.clear(kObject);
+  memory.showsClearly(kObject);
   EXPECT_EQ(memory.chance(kObject), chance);
 }
 
@@ -120,7 +120,7 @@ TEST(DoubtMemory, WithoutObjectsTakesAllForNeverTried) {
   expectUntried();
   memory.seen(kObject);
   expectUntried();
-  memory.clear(kObject);
+  memory.showsClearly(kObject);
   expectUntried();
   memory.beginView();
   expectUntried();
