@@ -24,12 +24,13 @@ endif()
 set(SIGHTLINE_SANITIZE_FLAGS "")
 if(SIGHTLINE_SANITIZE)
   # AddressSanitizer sees the memory that a null or wrapped pointer touches, or one into a smaller object or another
-  # class's. Without a check of each pointer beside that, programs take a third less time. That pointers are aligned is
+  # class's. Without a check of each pointer beside that, programs take a quarter to a third less time. That pointers are aligned is
   # checked where bytes are read as objects: the readers of files are fuzzed with all checks.
   set(SIGHTLINE_SANITIZE_FLAGS -fsanitize=address,undefined
     -fno-sanitize=null,pointer-overflow,object-size,vptr,alignment)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    # GCC's runtime finds no use of a variable after its function's return unless it is told to; nor need code for it.
+    # By default, GCC's runtime does not look for variables that are used after their function has returned. So no code
+    # is compiled for that.
     list(APPEND SIGHTLINE_SANITIZE_FLAGS --param=asan-use-after-return=0)
   endif()
 endif()
@@ -57,7 +58,7 @@ function(sightline_options target)
     target_link_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS})
   endif()
   if(SIGHTLINE_SANITIZE AND NOT own_UNCHECKED)
-    # -Og takes GCC half to three quarters of the time of -O1 to compile checked code, which runs about as fast.
+    # With -O1, GCC takes two and a half times as long to compile the runtime, and tests a quarter less to run.
     target_compile_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS} -fno-sanitize-recover=all
       -fno-omit-frame-pointer -UNDEBUG -Og -g1)
     # Vector code is compiled without SSSE3 and SSE4: their vectors are as long as those of SSE2, so that they touch the
@@ -73,10 +74,8 @@ function(sightline_options target)
 endfunction()
 
 function(sightline_optimise_less target)
-  get_target_property(options ${target} COMPILE_OPTIONS)
-  if(NOT "-Og" IN_LIST options)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  endif()
+  # First, so that what sightline_options() says takes precedence.
+  target_compile_options(${target} BEFORE PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 function(sightline_unity target)

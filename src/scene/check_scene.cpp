@@ -4,17 +4,10 @@
 #include <cstdint>
 #include <string>
 
+#include "src/math/point_text.h"
+
 namespace sightline {
 namespace {
-
-std::string coordinatesOf(const Vec3f& point) {
-  return "(" + std::to_string(point.x) + ", " + std::to_string(point.y) + ", " + std::to_string(point.z) +
-         ")";
-}
-
-bool holds(const Box& box, const Vec3f& point) {
-  return contains(box, Box{point, point});
-}
 
 // What is wrong with the numbers of the object itself; empty if nothing is.
 std::string faultOfNumbers(const SceneView& scene, const Object& object) {
@@ -46,10 +39,10 @@ std::string faultOfVertices(const SceneView& scene, const Object& object) {
     }
     const Vec3f& position = scene.positions[index];
     if (!isFinite(position)) {
-      return "position " + std::to_string(index) + " is not finite: " + coordinatesOf(position);
+      return "position " + std::to_string(index) + " is not finite: " + math::textOf(position);
     }
-    if (!holds(object.bounds, position)) {
-      return "its bounds do not hold position " + std::to_string(index) + ", " + coordinatesOf(position) +
+    if (!contains(object.bounds, Box{position, position})) {
+      return "its bounds do not hold position " + std::to_string(index) + ", " + math::textOf(position) +
              "; updateBounds() makes them";
     }
   }

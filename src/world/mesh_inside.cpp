@@ -14,6 +14,7 @@
 #include "sightline/world/world_mesh.h"
 #include "src/base/union_find.h"
 #include "src/geometry/exact_point.h"
+#include "src/math/point_text.h"
 #include "src/world/read_mesh.h"
 
 namespace sightline {
@@ -111,10 +112,6 @@ std::optional<int> winding(const Lattice& lattice, const Vec3d& point, const Vec
   return winding;
 }
 
-std::string textOf(const Vec3d& p) {
-  return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
-}
-
 Result<WeldedMesh> weldedFrom(const MeshView& view, const char* name) {
   const Result<ReadMesh> read = readMesh(view);
   if (!read) {
@@ -178,7 +175,7 @@ Status checkInside(const MeshView& occluder, const MeshView& drawn) {
     const Box box = boundsOf(own);
     for (std::size_t o = 0; o < outer_boxes.size(); ++o) {
       if (overlaps(box, outer_boxes[o]) && meet(lattice, own, triangleAt(*outer, 3 * o))) {
-        return Error{"a triangle of the occluder at " + textOf(own[0]) +
+        return Error{"a triangle of the occluder at " + math::textOf(own[0]) +
                      " meets the drawn mesh; move it inwards"};
       }
     }
@@ -195,7 +192,7 @@ Status checkInside(const MeshView& occluder, const MeshView& drawn) {
       around = winding(lattice, point, beyond[i], *outer);
     }
     if (!around || *around < 1) {
-      return Error{"the occluder at " + textOf(point) + " lies outside of the drawn mesh"};
+      return Error{"the occluder at " + math::textOf(point) + " lies outside of the drawn mesh"};
     }
   }
   return Success{};

@@ -13,7 +13,6 @@
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/support/count_allocations.h"
-#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -61,7 +60,7 @@ TEST(Allocations, AreCountedByThisTest) {
 TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
   for (const DemoScene* demo : {&smallCity(), &smallBuilding()}) {
     // The views are a camera path with jumps, after which occluders are chosen as in a first frame.
-    std::vector<View> views = demo->frames(demo->scene.paths[0], 80, test::rounds(30u));
+    std::vector<View> views = demo->frames(demo->scene.paths[0], 80, 30);
     const std::vector<View> others = jumps(*demo, 21, 6);
     views.insert(views.end(), others.begin(), others.end());
     const std::vector<Box> dynamic_boxes(demo->bounds.begin(), demo->bounds.begin() + 20);

@@ -175,7 +175,7 @@ TEST(RunInChild, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored)
 // An answer of 512 MiB, where this process may have no more.
 TEST(RunInChild, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
   if (test::sanitized()) {
-    GTEST_SKIP() << "sanitizers reserve more memory than the limit";
+    GTEST_SKIP() << "AddressSanitizer reserves more address space for itself than the limit allows";
   }
   constexpr int kNoMemory = 7, kChildLeft = 8, kDescriptorLeft = 9;
   const int code = exitCodeOf([] {
@@ -199,7 +199,7 @@ TEST(RunInChild, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
 
 TEST(RunInChild, AllMemoryIsNotTaken) {
   if (test::sanitized()) {
-    GTEST_SKIP() << "sanitizers reserve more memory than the limit";
+    GTEST_SKIP() << "AddressSanitizer reserves more address space for itself than the limit allows";
   }
   const std::string error = errorOf(kLimits, [] {
     std::vector<std::unique_ptr<Bytes>> all;

@@ -8,7 +8,6 @@
 
 #include "scenes/procedural.h"
 #include "tests/pvs/bake_scenes.h"
-#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -524,7 +523,7 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsWithoutSamples) {
 TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {
   const std::vector<Scene> scenes{makeShip({.decks = 3, .rooms = 4, .machinery = 8}), makeCity({.copies = 2}),
                                   makeBuilding({.floors = 2})};
-  for (const Scene& scene : std::span(scenes).first(test::rounds(scenes.size()))) {
+  for (const Scene& scene : scenes) {
     for (const bool witnesses : {false, true}) {
       BakeSettings settings{.triangle_budget = 100, .max_depth = 5, .witnesses = witnesses};
       const BakedVisibility with = baked(scene, settings);
@@ -559,7 +558,7 @@ TEST(Bake, KeepsNoSamplesAndLooksAtAnyDistanceWhereObjectsAreMany) {
 
 TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
-  BakeSettings settings{.max_depth = test::sanitized() ? 2u : 3u, .near_distance = 0.1};
+  BakeSettings settings{.max_depth = 3, .near_distance = 0.1};
   const BakedVisibility convex = baked(scene, settings);
   settings.occlusion = BakeOcclusion::kFused;
   const BakedVisibility fused = baked(scene, settings);

@@ -83,7 +83,7 @@ TEST(Limits, WhatIsPreparedAndCannotBeKeptIsOnlyTold) {
 
 TEST(Limits, TooLittleMemoryIsTold) {
   if (test::sanitized()) {
-    GTEST_SKIP() << "sanitizers reserve more memory than the limit";
+    GTEST_SKIP() << "AddressSanitizer reserves more address space for itself than the limit allows";
   }
   const Outcome outcome = runLimited("-v 700000", {"info", "demo:boxes?boxes=1000000"});
   EXPECT_EQ(outcome.code, 2) << outcome.err;

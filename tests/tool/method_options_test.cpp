@@ -223,7 +223,7 @@ TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
                                      "--planes",    "through-eye,through-box",
                                      "--hierarchy", "kd,bvh",
                                      "--coherence", "on,off",
-                                     "--frames",    test::sanitized() ? "0:400:100" : "0:400:25",
+                                     "--frames",    "0:400:25",
                                      "--width",     "640",
                                      "--height",    "360",
                                      "--json",      "-"});

@@ -123,7 +123,7 @@ TEST(WorldFrames, AReservedWorldGrowsWithoutCopyingWhatIsThere) {
 // An engine that replaces operator new sees all memory of a world. Where a sanitizer has taken the place of
 // the C library's functions, they cannot be replaced once more and counted, so there is nothing to compare.
 TEST(WorldFrames, TakeAllMemoryFromOperatorNew) {
-  if (test::callsOfMalloc == nullptr) {
+  if (test::callsOfMalloc == nullptr) {  // with sanitizers, and where the C library is not glibc
     GTEST_SKIP() << "the C library's functions cannot be counted here";
   }
   const std::size_t c_before = test::callsOfMalloc(), new_before = allocations;

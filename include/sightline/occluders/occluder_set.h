@@ -178,10 +178,8 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
 
 // A polygon that the caller gives: it has to be drawn and opaque, or what lies behind it is wrongly hidden.
 struct OccluderPolygon {
-  // Scene space, convex, in one plane. The front is the side to which cross(b - a, c - a) points, for
-  // consecutive vertices a, b and c that are not in one line. In a left-handed space that is the side from
-  // which the polygon appears clockwise: reverse the order of vertices if your fronts are counter-clockwise
-  // there.
+  // Scene space, convex, in one plane. The front is that of the triangle of any three consecutive vertices
+  // that are not in one line, as SceneView says it.
   std::span<const Vec3f> vertices{};
   bool double_sided = false;
   // The object that shows this polygon, any number: OccluderChooser, and so a Culler, looks for occluders

@@ -35,9 +35,9 @@ namespace world {
 struct WorldData;
 }
 
-// Of a World. Ids of meshes, instances and joins stay the same as long as these are there; after
-// removeMesh(), remove() or drop(), the next one that comes may have the same id. So forget an id together
-// with what it names.
+// Ids of a World's meshes, instances and joins stay the same as long as these are there; after removeMesh(),
+// remove() or drop(), the next one that comes may have the same id. So forget an id together with what it
+// names.
 using MeshId = Id<struct MeshTag>;
 using InstanceId = Id<struct InstanceTag>;
 using JoinId = Id<struct JoinTag>;
