@@ -63,8 +63,8 @@ View overview(const Scene& scene) {
   view.tan_half_fovy = std::tan(0.35);
   view.eye = centre + aside * (1.6 * radius);
   view.aspect = 16.0 / 9.0;
-  view.near = 0.05 * radius;
-  view.far = 4.0 * radius;
+  view.z_near = 0.05 * radius;
+  view.z_far = 4.0 * radius;
   setOrientation(view, -aside, {0, 1, 0});
   return view;
 }

@@ -79,7 +79,7 @@ class RayDepth {
     double low_x = 1e30, high_x = -1e30, low_y = 1e30, high_y = -1e30, nearest = 1e30;
     for (unsigned i = 0; i < 8; ++i) {
       const Vec3d corner = part[0][i & 1] + part[1][i >> 1 & 1] + part[2][i >> 2];
-      if (corner.z <= view_.near) {
+      if (corner.z <= view_.z_near) {
         return std::nullopt;
       }
       const double per_depth = 1.0 / corner.z, x = corner.x * per_depth, y = corner.y * per_depth;
@@ -132,7 +132,7 @@ class RayDepth {
       ray.org_x[i] = static_cast<float>(view_.eye.x), ray.dir_x[i] = static_cast<float>(d.x);
       ray.org_y[i] = static_cast<float>(view_.eye.y), ray.dir_y[i] = static_cast<float>(d.y);
       ray.org_z[i] = static_cast<float>(view_.eye.z), ray.dir_z[i] = static_cast<float>(d.z);
-      ray.tnear[i] = static_cast<float>(view_.near), ray.tfar[i] = static_cast<float>(view_.far);
+      ray.tnear[i] = static_cast<float>(view_.z_near), ray.tfar[i] = static_cast<float>(view_.z_far);
       ray.time[i] = 0.0f, ray.mask[i] = 0xffffffffu;
       ray.id[i] = ray.flags[i] = 0;
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;

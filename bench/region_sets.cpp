@@ -163,8 +163,8 @@ bool isConfirmed(const ExactVisibility& exact, const Vec3d& eye, ObjectId object
   View view;
   view.eye = eye;
   setOrientation(view, point - eye, {0.0, 1.0, 0.0});
-  view.near = 1e-3;
-  view.far = 1e6;
+  view.z_near = 1e-3;
+  view.z_far = 1e6;
   return exact.confirm(view, {object, point});
 }
 

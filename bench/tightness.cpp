@@ -77,7 +77,7 @@ bool boxShows(const RayScene& rays, const SceneView& scene, const View& view, co
       continue;
     }
     RayScene::Batch batch;
-    const double near = view.near / dot(view.forward, normalized(point - view.eye));
+    const double near = view.z_near / dot(view.forward, normalized(point - view.eye));
     const Vec3d start = view.eye + normalized(point - view.eye) * near;
     batch[0] = {Vec3f(start), Vec3f(point - start), 0.99999f};
     hits.clear();

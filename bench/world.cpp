@@ -128,7 +128,7 @@ struct City {
     View view;
     view.eye = {0.5 * kBlock, 1.7, 0.25 * frame};
     setOrientation(view, {0.3 * std::sin(0.05 * frame), 0, 1}, {0, 1, 0});
-    view.far = 2000.0;
+    view.z_far = 2000.0;
     return view;
   }
 };
@@ -256,7 +256,7 @@ void measureQuestions(std::size_t count) {
     light.aspect = 1.0;
     setOrientation(light, {0.4, -0.8, 0.3}, {0, 1, 0});
     light.eye = view.eye + view.forward * 50.0 - light.forward * 200.0;
-    light.far = 400.0;
+    light.z_far = 400.0;
     still.push_back(processorUs([&] { culler.cull(world, view); }));
     eyes.push_back(processorUs([&] { both.cull(world, pair); }));
     shadows.push_back(processorUs([&] { sun.cull(world, light, culler); }));
@@ -489,7 +489,7 @@ void measureCrowd(std::size_t count) {
   View view = city.view(0);
   view.eye = {0.0, 30.0, -250.0};
   setOrientation(view, {0, -0.2, 1}, {0, 1, 0});
-  view.far = 500.0;
+  view.z_far = 500.0;
   const auto culled = [&](const World& of) {
     WorldCuller culler;
     std::vector<double> times;

@@ -376,8 +376,8 @@ View cameraAt(int frame) {
   view.eye = {0.0, 1.7, 100.0 - 0.5 * frame};
   setOrientation(view, {0.35 * std::sin(0.03 * frame), 0.02, -1}, {0, 1, 0});
   view.aspect = double{kWidth} / kHeight;
-  view.near = kSplits[0];
-  view.far = kSplits[kCascades];
+  view.z_near = kSplits[0];
+  view.z_far = kSplits[kCascades];
   return view;
 }
 
@@ -398,8 +398,8 @@ View cascade(const View& view, int i) {
   const Vec3d snapped = light.right * (std::floor(dot(light.right, at) / texel) * texel) +
                         light.up * (std::floor(dot(light.up, at) / texel) * texel) +
                         light.forward * dot(light.forward, at);
-  light.near = 0.0;
-  light.far = 2.0 * radius + 200.0;
+  light.z_near = 0.0;
+  light.z_far = 2.0 * radius + 200.0;
   light.eye = snapped - light.forward * (radius + 200.0);  // 200 m: what may stand before the cascade
   return light;
 }

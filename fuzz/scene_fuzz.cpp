@@ -79,8 +79,8 @@ CameraPath pathOf(const std::vector<View>& views, std::size_t shown) {
   path.height = 1000;
   path.shift_x = views[shown].shift_x;
   path.shift_y = views[shown].shift_y;
-  path.near = first.near;
-  path.far = std::min(first.far, 1e12);
+  path.z_near = first.z_near;
+  path.z_far = std::min(first.z_far, 1e12);
   for (const View& view : views) {
     path.frames.push_back({view.eye, view.forward, view.up});
   }

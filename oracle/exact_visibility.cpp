@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kNotSeen = std::numeric_limits<std::uint64_t>::max();
 
 FloatRay floatRay(const View& view, const ViewRay& ray) {
-  return {Vec3f(ray.origin), Vec3f(ray.direction), static_cast<float>(view.far - view.near)};
+  return {Vec3f(ray.origin), Vec3f(ray.direction), static_cast<float>(view.z_far - view.z_near)};
 }
 
 // Packs the pixel into the upper and the distance into the lower half, so that the minimum is the first pixel
@@ -187,8 +187,8 @@ std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId o
     if (inVolume(view, point, -1e-6)) {
       FloatRay& ray = batch[count++];
       ray = floatRay(view, rayTo(view, point));
-      const double t = depthOf(view, point) - view.near;
-      if (t > 1e-3 * view.near) {
+      const double t = depthOf(view, point) - view.z_near;
+      if (t > 1e-3 * view.z_near) {
         ray.direction = Vec3f((point - Vec3d(ray.origin)) / t);  // from the rounded origin to the exact point
       }
     }

@@ -43,9 +43,9 @@ View viewAlong(const Vec3d& eye, const Vec3d& forward, double tan_half, double n
                  std::abs(forward.y) < 0.9 * length(forward) ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0));
   view.tan_half_fovy = tan_half;
   view.aspect = 1.0;
-  view.far = std::numeric_limits<double>::infinity();
-  view.near = 1.0;
-  view.near = near_distance / nearDistance(view) * kWithinNear;
+  view.z_far = std::numeric_limits<double>::infinity();
+  view.z_near = 1.0;
+  view.z_near = near_distance / nearDistance(view) * kWithinNear;
   return view;
 }
 

@@ -28,11 +28,11 @@ inline ViewRay rayThrough(const View& view, double x, double y) {
   if (view.orthographic) {
     const double half = 0.5 * view.ortho_height;
     const Vec3d start = view.eye + view.right * (x * half * view.aspect) + view.up * (y * half);
-    return {start + view.forward * view.near, view.forward};
+    return {start + view.forward * view.z_near, view.forward};
   }
   const Vec3d direction =
       view.forward + view.right * (x * view.tan_half_fovy * view.aspect) + view.up * (y * view.tan_half_fovy);
-  return {view.eye + direction * view.near, direction};
+  return {view.eye + direction * view.z_near, direction};
 }
 
 // The ray through the centre of a pixel; rows count from the top.
@@ -47,10 +47,10 @@ inline ViewRay rayOfPixel(const View& view, std::uint32_t column, std::uint32_t 
 inline ViewRay rayTo(const View& view, const Vec3d& point) {
   const double depth = depthOf(view, point);
   if (view.orthographic) {
-    return {point - view.forward * (depth - view.near), view.forward};
+    return {point - view.forward * (depth - view.z_near), view.forward};
   }
   const Vec3d direction = (point - view.eye) / depth;
-  return {view.eye + direction * view.near, direction};
+  return {view.eye + direction * view.z_near, direction};
 }
 
 // True if the point is inside the view volume, enlarged by the relative slack; a negative slack shrinks the
@@ -64,8 +64,8 @@ inline bool inVolume(const View& view, const Vec3d& point, double slack) {
   // Rounding grows with the distance from the forward axis.
   const double x_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_x))) * view.aspect;
   const double y_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_y)));
-  return depth >= view.near * (1.0 - slack) && depth <= view.far * (1.0 + slack) && std::abs(x) <= x_limit &&
-         std::abs(y) <= y_limit;
+  return depth >= view.z_near * (1.0 - slack) && depth <= view.z_far * (1.0 + slack) &&
+         std::abs(x) <= x_limit && std::abs(y) <= y_limit;
 }
 
 }  // namespace sightline

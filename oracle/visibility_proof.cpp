@@ -58,8 +58,8 @@ void VisibilityProof::beginFigures() {
   appearances_.clear();
   pieces_.clear();
   picture_ = rectangle(figures_, space_.picture());
-  near_ = figures_.depthGiven(space_.view().near);
-  far_ = figures_.depthGiven(std::isfinite(space_.view().far) ? space_.view().far : 1.0);
+  near_ = figures_.depthGiven(space_.view().z_near);
+  far_ = figures_.depthGiven(std::isfinite(space_.view().z_far) ? space_.view().z_far : 1.0);
 }
 
 VisibilityProof::Appearance& VisibilityProof::appearance(const Triangle& triangle) {
@@ -86,7 +86,7 @@ VisibilityProof::Appearance& VisibilityProof::appearance(const Triangle& triangl
 
 // Leaves of a plane what is not before the near plane.
 void VisibilityProof::cutAtNear(ImageRegion& region, Depth depth) {
-  if (space_.view().near > 0.0 || space_.view().orthographic) {
+  if (space_.view().z_near > 0.0 || space_.view().orthographic) {
     const Line beyond_near = figures_.lineWhereNearer(near_, depth);
     if (!figures_.dividesNothing(beyond_near)) {
       region.lines.push_back(beyond_near);
@@ -156,7 +156,7 @@ VisibilityProof::Cover VisibilityProof::coverTriangle(const Triangle& triangle) 
 
 // Covers what the picture shows of a target in a region that begins at the near plane.
 VisibilityProof::Cover VisibilityProof::coverImage(const Target& target, ImageRegion region) {
-  if (std::isfinite(space_.view().far)) {
+  if (std::isfinite(space_.view().z_far)) {
     const Line before_far = figures_.lineWhereNearer(target.depth, far_);
     if (!figures_.dividesNothing(before_far)) {
       region.lines.push_back(before_far);
@@ -238,7 +238,7 @@ void VisibilityProof::castRays(const ImagePolygon& piece) {
     directions_.push_back((a + b) * 0.4 + middle * 0.2);
   }
   RayScene::Batch batch;
-  const auto length = static_cast<float>(space_.view().far - space_.view().near);
+  const auto length = static_cast<float>(space_.view().z_far - space_.view().z_near);
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const ViewRay ray = space_.ray(directions_[i]);
     batch[i] = {Vec3f(ray.origin), Vec3f(ray.direction), length};
@@ -310,7 +310,7 @@ bool VisibilityProof::isBefore(const RayHit& hit, const Target& target) const {
     return hit.first_index != target.first_index;
   }
   const View& view = space_.view();
-  const double depth = view.near + static_cast<double>(hit.t);
+  const double depth = view.z_near + static_cast<double>(hit.t);
   return depth < (target.kind == TargetKind::kDirections
                       ? target.nearest
                       : depthOf(view, pointOnPlane(target.plane, directions_[hit.ray])));
@@ -498,7 +498,7 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
       }
     }
   });
-  const bool has_far = std::isfinite(space_.view().far);
+  const bool has_far = std::isfinite(space_.view().z_far);
   for (const std::uint32_t first_index : own) {
     const Depth depth = appearances_.at(first_index).depth;
     const bool in_view = !has_far || figures_.side(figures_.lineWhereNearer(depth, far_), direction) >= 0;

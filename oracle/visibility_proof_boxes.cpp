@@ -54,10 +54,10 @@ VisibilityProof::BoxImage VisibilityProof::imageOf(const Box& box) const {
 VisibilityProof::Cover VisibilityProof::coverBox(const Box& box, ObjectId object) {
   const View& view = space_.view();
   const BoxImage image = imageOf(box);
-  if (image.farthest < view.near || image.nearest > view.far) {
+  if (image.farthest < view.z_near || image.nearest > view.z_far) {
     return Cover::kHidden;
   }
-  if (!image.before_the_eye || !(image.nearest > view.near)) {
+  if (!image.before_the_eye || !(image.nearest > view.z_near)) {
     return Cover::kOpen;
   }
   const ImageRectangle &extents = image.extents, picture = space_.picture();
@@ -87,7 +87,7 @@ Decision VisibilityProof::decideBox(ObjectId object, std::uint32_t max_steps) {
     box_corners_[corner] = cornerOf(box, corner);
   }
   Cover cover = coverBox(box, object);
-  if (cover == Cover::kOpen && !(imageOf(box).nearest > space_.view().near)) {
+  if (cover == Cover::kOpen && !(imageOf(box).nearest > space_.view().z_near)) {
     if (const std::optional<Corner> direction = directionIntoBox()) {
       return {Verdict::kVisible, {object, space_.ray(figures_.direction(*direction)).origin}};
     }

@@ -215,7 +215,7 @@ CameraPath views(const BoxGrid& grid, std::uint32_t seed) {
   constexpr std::uint32_t kAcross = 5, kUp = 4;
   CameraPath path;
   path.name = "views";
-  path.far = grid.far();
+  path.z_far = grid.far();
   Random random(seed, ~std::uint64_t{0});
   for (std::uint32_t i = 0; i < kAcross * kUp; ++i) {
     const std::uint32_t column = (2 * (i % kAcross) + 1) * grid.columns / (2 * kAcross);

@@ -156,7 +156,7 @@ void addSky(MovingScene& scene) {
 CameraPath cameraPath(const Flight& flight) {
   CameraPath path;
   path.name = "chase";
-  path.far = 4500.0;
+  path.z_far = 4500.0;
   for (std::uint32_t f = 0; f < flight.frames; ++f) {
     const double x = flight.leaderX(f);
     const Vec3d eye = besideMiddle(x - 95.0, 5.0, kHeight + 7.0),

@@ -210,7 +210,7 @@ CameraPath walkAlongHall(double east) {
   CameraPath path;
   path.name = "along";
   path.fovy_deg = 50.0;
-  path.far = 200.0;
+  path.z_far = 200.0;
   const double west = kHallWest + 1.0;
   for (std::uint32_t f = 0; f < kFrames; ++f) {
     const double t = static_cast<double>(f) / (kFrames - 1);

@@ -106,7 +106,7 @@ CameraPath randomViews(const Plan& plan, const Scene& scene, Random random) {
   constexpr std::size_t kFrames = 200;
   CameraPath path;
   path.name = "random";
-  path.far = kFar;
+  path.z_far = kFar;
   while (path.frames.size() < kFrames) {
     const Vec3d eye = randomEye(plan, random);
     const Point2 look = unitVector(random.uniform());

@@ -207,7 +207,7 @@ CameraPath cameraPath(double velocity, double side, std::uint32_t frames) {
   path.name = "round";
   path.fovy_deg = 45.0;
   path.width = path.height = 800;
-  path.far = 10.0;
+  path.z_far = 10.0;
   const Vec3d middle(0.5, 0.5, 0.5);
   for (std::uint32_t f = 0; f < frames; ++f) {
     const double turns = f * velocity * kTurnsAFrame;

@@ -79,7 +79,7 @@ CameraPath walkAlong(std::span<const Vec3d> line, const WalkOptions& options) {
   const MeasuredLine measured(line);
   CameraPath path;
   path.name = options.name;
-  path.far = options.far;
+  path.z_far = options.far;
   path.frames.reserve(options.frames);
   for (std::uint32_t i = 0; i < options.frames; ++i) {
     const double part = options.frames > 1 ? static_cast<double>(i) / (options.frames - 1) : 0.0;

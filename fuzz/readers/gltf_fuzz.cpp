@@ -59,7 +59,7 @@ void checkScene(const Scene& scene) {
     require(isFinite(position));
   }
   for (const CameraPath& path : scene.paths) {
-    require(!path.frames.empty() && path.near > 0.0 && path.far > path.near && path.width > 0 &&
+    require(!path.frames.empty() && path.z_near > 0.0 && path.z_far > path.z_near && path.width > 0 &&
             path.height > 0);
     for (const CameraFrame& frame : path.frames) {
       require(isFinite(frame.eye) && std::abs(length(frame.forward) - 1.0) < 1e-3);

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     requireOneLine(path.error());
     return 0;
   }
-  require(!path->frames.empty() && path->near > 0.0 && path->far > path->near && path->width > 0 &&
+  require(!path->frames.empty() && path->z_near > 0.0 && path->z_far > path->z_near && path->width > 0 &&
           path->height > 0);
   for (std::uint32_t frame = 0; frame < path->frames.size(); ++frame) {
     require(validate(path->view(frame, {})).has_value());

@@ -168,8 +168,8 @@ bool ViewsToCome::plan() {
   const double back = std::max({0.0, backFor(first_), backFor(end_)});
   wide_.eye = view_.eye - wide_.forward * back;
   const double along = toWide(end_ - first_).z;
-  wide_.near = 0.9 * (back + std::min(along, 0.0) - spread_ + view_.near * shown_.low_z);
-  wide_.far = (back + std::max(along, 0.0) + spread_ + view_.far * shown_.high_z) * (1.0 + kRounding);
+  wide_.z_near = 0.9 * (back + std::min(along, 0.0) - spread_ + view_.z_near * shown_.low_z);
+  wide_.z_far = (back + std::max(along, 0.0) + spread_ + view_.z_far * shown_.high_z) * (1.0 + kRounding);
   viewers_.offsets = {first_ - wide_.eye, end_ - wide_.eye};
   viewers_.radius = spread_ * (1.0 + kRounding) + 0x1p-40 * maxComponent(abs(view_.eye));
   viewers_.near_distance = nearDistance(view_) * (1.0 + kRounding);
@@ -223,8 +223,8 @@ bool ViewsToCome::contain(const View& view) const {
   return extent.in_front && within(extent.low_x, extent.high_x, shown_.low_x, shown_.high_x) &&
          within(extent.low_y, extent.high_y, shown_.low_y, shown_.high_y) && at.x >= shown_.low_x * at.z &&
          at.x <= shown_.high_x * at.z && at.y >= shown_.low_y * at.z && at.y <= shown_.high_y * at.z &&
-         at.z + view.near * extent.low_z * (1.0 - kSkew) >= wide_.near &&
-         at.z + view.far * extent.high_z * (1.0 + kSkew) <= wide_.far;
+         at.z + view.z_near * extent.low_z * (1.0 - kSkew) >= wide_.z_near &&
+         at.z + view.z_far * extent.high_z * (1.0 + kSkew) <= wide_.z_far;
 }
 
 }  // namespace sightline::culling

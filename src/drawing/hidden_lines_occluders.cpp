@@ -11,7 +11,7 @@ namespace {
 // The box of the triangle's part beyond the near plane; HidingBox::none() if there is none.
 HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
   HidingBox box = HidingBox::none();
-  const double near = view.view().near;
+  const double near = view.view().z_near;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d& a = triangle.corners[i];
     const Vec3d& b = triangle.corners[(i + 1) % 3];
@@ -31,7 +31,7 @@ HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
 bool onScreen(const HidingBox& box, const LineView& view) {
   const bool beside = box.min_x > view.right() || box.max_x < view.left() || box.min_y > view.top() ||
                       box.max_y < view.bottom();
-  return !beside && box.reciprocal_depth >= view.onScreen({0.0, 0.0, view.view().far}).reciprocal_depth;
+  return !beside && box.reciprocal_depth >= view.onScreen({0.0, 0.0, view.view().z_far}).reciprocal_depth;
 }
 
 }  // namespace

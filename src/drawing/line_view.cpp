@@ -28,7 +28,7 @@ bool isDrawable(const View& view, double page_height) {
   const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
-         isSize(view.near) && isSize(view.far) && view.near < view.far && isShift(view.shift_x) &&
+         isSize(view.z_near) && isSize(view.z_far) && view.z_near < view.z_far && isShift(view.shift_x) &&
          isShift(view.shift_y) && isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) &&
          isFinite(view.forward);
 }
@@ -85,8 +85,8 @@ bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) co
   to = 1.0;
   const double scale_a = view_.orthographic ? 1.0 : a.z;
   const double scale_b = view_.orthographic ? 1.0 : b.z;
-  return drawable_ && narrow(a.z - view_.near, b.z - view_.near, from, to) &&
-         narrow(view_.far - a.z, view_.far - b.z, from, to) &&
+  return drawable_ && narrow(a.z - view_.z_near, b.z - view_.z_near, from, to) &&
+         narrow(view_.z_far - a.z, view_.z_far - b.z, from, to) &&
          narrow(a.x - left_ * scale_a, b.x - left_ * scale_b, from, to) &&
          narrow(right_ * scale_a - a.x, right_ * scale_b - b.x, from, to) &&
          narrow(a.y - bottom_ * scale_a, b.y - bottom_ * scale_b, from, to) &&

@@ -49,9 +49,9 @@ double Outliner::borderDistance(std::uint32_t border, const Vec3d& p) const {
   const double depth = view_.view().orthographic ? 1.0 : p.z;
   switch (border) {
     case 0:
-      return p.z - view_.view().near;
+      return p.z - view_.view().z_near;
     case 1:
-      return view_.view().far - p.z;
+      return view_.view().z_far - p.z;
     case 2:
       return p.x - left_ * depth;
     case 3:
@@ -74,7 +74,7 @@ std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
 // The nearest grid point, x to the right and y down as on the page. It is clamped, because rounding may leave
 // points beyond the margin, and points before the near plane that have no depth at all.
 GridPoint Outliner::onGrid(const Vec3d& p) const {
-  const double depth = view_.view().orthographic ? 1.0 : std::max(p.z, view_.view().near);
+  const double depth = view_.view().orthographic ? 1.0 : std::max(p.z, view_.view().z_near);
   const double x = std::clamp(p.x / depth, left_, right_);
   const double y = std::clamp(p.y / depth, bottom_, top_);
   const double lines = view_.pageScale() * scale_;
@@ -174,7 +174,7 @@ void Outliner::imageHull(const SceneView& scene, ObjectId id, GridPath& hull) co
     const double depth = view_.view().orthographic ? 1.0 : p.z;
     const double lines = view_.pageScale() * scale_;
     const double x = (p.x / depth - view_.left()) * lines, y = (view_.top() - p.y / depth) * lines;
-    if (p.z < view_.view().near || !(std::abs(x) < kFarthest && std::abs(y) < kFarthest)) {
+    if (p.z < view_.view().z_near || !(std::abs(x) < kFarthest && std::abs(y) < kFarthest)) {
       is_whole_page = true;
       break;
     }

@@ -43,9 +43,9 @@ bool beyondNear(const HidingTriangle& triangle, const Vec3d& normal, const Hidab
   const Vec3d& p = triangle.corners[0];
   const auto excess = [&](const Vec3d& point) {
     if (!view.orthographic) {
-      return point.z * dot(normal, p) - view.near * dot(normal, point);
+      return point.z * dot(normal, p) - view.z_near * dot(normal, point);
     }
-    return (p.z - view.near) * normal.z - normal.x * (point.x - p.x) - normal.y * (point.y - p.y);
+    return (p.z - view.z_near) * normal.z - normal.x * (point.x - p.x) - normal.y * (point.y - p.y);
   };
   return narrow(excess(line.a), excess(line.b), from, to);
 }
@@ -101,7 +101,7 @@ bool hiddenPart(const HidingTriangle& triangle, const HidableLine& line, const V
     return false;
   }
   const Vec3d normal = normalized(cross(q - p, r - p));
-  const bool crosses_near = std::min({p.z, q.z, r.z}) < view.near;
+  const bool crosses_near = std::min({p.z, q.z, r.z}) < view.z_near;
   return behindPlane(triangle, normal, line, from, to) &&
          (!crosses_near || beyondNear(triangle, normal, line, view, from, to));
 }

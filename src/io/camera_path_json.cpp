@@ -146,7 +146,7 @@ Result<CameraFrame> readFrame(const json& object, const std::string& where) {
 Status readProjection(const json& document, const std::string& name, CameraPath& path) {
   Status status = readNumber(document, "fovy_deg", name, path.fovy_deg);
   for (const auto& [key, value] : {std::pair("ortho_height", &path.ortho_height),
-                                   std::pair("near", &path.near), std::pair("far", &path.far)}) {
+                                   std::pair("near", &path.z_near), std::pair("far", &path.z_far)}) {
     if (status) {
       status = readNumber(document, key, name, *value);
     }
@@ -168,10 +168,10 @@ Status readProjection(const json& document, const std::string& name, CameraPath&
   if (document.contains("ortho_height") && !(path.ortho_height > 0.0)) {
     return missing(name, "ortho_height", "greater than 0");
   }
-  if (!(path.near > 0.0)) {
+  if (!(path.z_near > 0.0)) {
     return missing(name, "near", "greater than 0");
   }
-  if (!(path.far > path.near)) {
+  if (!(path.z_far > path.z_near)) {
     return missing(name, "far", "greater than \"near\"");
   }
   return Success{};
@@ -237,8 +237,8 @@ std::string toJson(const CameraPath& path) {
   if (path.shift_x != 0.0 || path.shift_y != 0.0) {
     document["shift"] = json::array({path.shift_x, path.shift_y});
   }
-  document["near"] = path.near;
-  document["far"] = path.far;
+  document["near"] = path.z_near;
+  document["far"] = path.z_far;
   document["frames"] = json::array();
   for (const CameraFrame& frame : path.frames) {
     document["frames"].push_back(

@@ -33,12 +33,12 @@ Vec3d chooseOrigin(const Bounds& bounds) {
 
 // The far plane that leaves nothing of the scene out, for cameras that state none.
 void setUnstatedFarPlane(CameraPath& path, const Bounds& bounds) {
-  double far = 2.0 * path.near;
+  double far = 2.0 * path.z_near;
   for (const CameraFrame& frame : path.frames) {
     const Vec3d reach = max(abs(bounds.min - frame.eye), abs(bounds.max - frame.eye));
     far = std::max(far, 1.01 * length(reach));
   }
-  path.far = far;
+  path.z_far = far;
 }
 
 }  // namespace
@@ -77,14 +77,14 @@ Scene SceneBuilder::finish() {
     }
     positions_world_ = {};
     for (CameraPath& path : scene_.paths) {
-      if (path.far == 0.0) {
+      if (path.z_far == 0.0) {
         setUnstatedFarPlane(path, bounds);
       }
     }
   }
   for (CameraPath& path : scene_.paths) {
-    if (path.far == 0.0) {
-      path.far = std::max(2000.0, 2.0 * path.near);
+    if (path.z_far == 0.0) {
+      path.z_far = std::max(2000.0, 2.0 * path.z_near);
     }
   }
   weldPositions(scene_);

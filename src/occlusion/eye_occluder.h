@@ -21,7 +21,7 @@ struct Eye {
 
   Eye() = default;
   explicit Eye(const View& view)
-      : position(view.eye), forward(view.forward), near(view.near), orthographic(view.orthographic) {}
+      : position(view.eye), forward(view.forward), near(view.z_near), orthographic(view.orthographic) {}
 
   // Returns the plane through the eye and the line from p to q, with unit normal, such that a polygon with
   // the edge p -> q, counter-clockwise as seen from the eye, lies behind it. sine: becomes that of the angle

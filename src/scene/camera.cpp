@@ -35,9 +35,9 @@ Mat4 clipFromScene(const View& view) {
   }
   Mat4 clip_from_view;
   // Limits for far -> infinity: (far + near) / (far - near) -> 1, far / (far - near) -> 1.
-  const bool endless = std::isinf(view.far);
-  const double depth = view.far - view.near;
-  const double middle = endless ? 1.0 : (view.far + view.near) / depth;
+  const bool endless = std::isinf(view.z_far);
+  const double depth = view.z_far - view.z_near;
+  const double middle = endless ? 1.0 : (view.z_far + view.z_near) / depth;
   if (view.orthographic) {
     const double half = view.ortho_height * 0.5;
     clip_from_view(0, 0) = 1.0 / (half * view.aspect);
@@ -52,7 +52,7 @@ Mat4 clipFromScene(const View& view) {
     clip_from_view(0, 2) = view.shift_x;
     clip_from_view(1, 2) = view.shift_y;
     clip_from_view(2, 2) = -middle;
-    clip_from_view(2, 3) = endless ? -2.0 * view.near : -2.0 * view.far * view.near / depth;
+    clip_from_view(2, 3) = endless ? -2.0 * view.z_near : -2.0 * view.z_far * view.z_near / depth;
     clip_from_view(3, 2) = -1.0;
     clip_from_view(3, 3) = 0.0;
   }
@@ -86,10 +86,10 @@ Frustum frustumOf(const View& given) {
     frustum.planes[2] = through(view.up + view.forward * down, view.eye);
     frustum.planes[3] = through(view.forward * up - view.up, view.eye);
   }
-  frustum.planes[4] = through(view.forward, view.eye + view.forward * view.near);
+  frustum.planes[4] = through(view.forward, view.eye + view.forward * view.z_near);
   // An infinite offset would make the plane NaN; this one is beyond all boxes.
   constexpr double kFarthest = 0x1p500;
-  frustum.planes[5] = through(-view.forward, view.eye + view.forward * std::min(view.far, kFarthest));
+  frustum.planes[5] = through(-view.forward, view.eye + view.forward * std::min(view.z_far, kFarthest));
   return frustum;
 }
 
@@ -111,7 +111,7 @@ double nearDistance(const View& given) {
       farthest = std::max(farthest, length(view.forward + view.right * side + view.up * height));
     }
   }
-  return view.near * farthest * (1.0 + 0x1p-48);
+  return view.z_near * farthest * (1.0 + 0x1p-48);
 }
 
 View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {
@@ -125,8 +125,8 @@ View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {
   view.aspect = static_cast<double>(width) / static_cast<double>(height);
   view.shift_x = shift_x;
   view.shift_y = shift_y;
-  view.near = near;
-  view.far = far;
+  view.z_near = near;
+  view.z_far = far;
   return view;
 }
 

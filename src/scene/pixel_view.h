@@ -53,9 +53,9 @@ struct PixelView {
     up = view.up;
     forward = view.forward;
     orthographic = view.orthographic;
-    frustum_near = view.near;
-    far = view.far;
-    near = std::max(view.near, 2.0 / kLargestScale);
+    frustum_near = view.z_near;
+    far = view.z_far;
+    near = std::max(view.z_near, 2.0 / kLargestScale);
     middle_x = 0.5 * width * (1.0 - view.shift_x);
     middle_y = 0.5 * height * (1.0 - view.shift_y);
     const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;

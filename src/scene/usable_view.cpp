@@ -32,11 +32,11 @@ const char* projectionFault(const View& view) {
   if (!isPositive(height) || !isPositive(view.aspect * height)) {
     return "View::aspect times the height of the view must be greater than 0 and finite";
   }
-  if (!(std::isfinite(view.near) && view.near >= 0.0)) {
-    return "View::near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
+  if (!(std::isfinite(view.z_near) && view.z_near >= 0.0)) {
+    return "View::z_near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
   }
-  if (!(view.far > view.near)) {
-    return "View::far must be greater than View::near; it may be infinite";
+  if (!(view.z_far > view.z_near)) {
+    return "View::z_far must be greater than View::z_near; it may be infinite";
   }
   return nullptr;
 }

@@ -150,13 +150,13 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
     return tiltedDepths();
   }
   const double b = rows.z.offset - a * depth.offset;
-  view.near = b / (range.near * q - a);
-  view.far = farOf(view, rows.z - rows.w * range.far);
-  if (!(view.near > 0.0 && std::isfinite(view.near))) {
+  view.z_near = b / (range.near * q - a);
+  view.z_far = farOf(view, rows.z - rows.w * range.far);
+  if (!(view.z_near > 0.0 && std::isfinite(view.z_near))) {
     return Error{
         "clip_from_scene has no near plane in front of the eye: is ClipSpace::depth that of the matrix?"};
   }
-  if (!(view.far > view.near)) {
+  if (!(view.z_far > view.z_near)) {
     return Error{"clip_from_scene has its far plane before its near plane: is ClipSpace::depth kOneToZero?"};
   }
   return view;
@@ -193,8 +193,8 @@ Result<View> orthographicView(const Rows& rows, const DepthRange& range) {
   view.eye = commonPoint(x, y, near);
   view.ortho_height = 2.0 * w / y_scale;
   view.aspect = y_scale / x_scale;
-  view.near = 0.0;
-  view.far = std::abs(range.far - range.near) / scale;
+  view.z_near = 0.0;
+  view.z_far = std::abs(range.far - range.near) / scale;
   return view;
 }
 
@@ -244,9 +244,9 @@ Result<ObliqueView> obliqueViewFromClip(const Mat4& clip_from_scene, const ClipS
   const Row plane = beyond * (1.0 / size);
   ObliqueView oblique{*picture, {plane.normal, plane.offset}};
   constexpr double kRounding = 1e-9;
-  oblique.view.near = (1.0 - kRounding) * nearestBeyond(oblique.view, plane);
-  oblique.view.far = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(oblique.view.near)) {
+  oblique.view.z_near = (1.0 - kRounding) * nearestBeyond(oblique.view, plane);
+  oblique.view.z_far = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(oblique.view.z_near)) {
     return Error{"clip_from_scene has its near plane behind all that is in the picture"};
   }
   const Result<View> valid = validate(oblique.view);

@@ -32,7 +32,7 @@ double pixelsApart(double metres, double nearest, const View& view, const DepthB
   // What moves in depth moves by this part of it across the picture.
   const double slope =
       high * (std::max(view.aspect, 1.0)) * (1.0 + std::max(std::abs(view.shift_x), std::abs(view.shift_y)));
-  return metres * (1.0 + slope) * scale / std::max(nearest, view.near);
+  return metres * (1.0 + slope) * scale / std::max(nearest, view.z_near);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const Vie
   const auto shows = [&](const Box& box) {
     const double nearest = nearestDepth(box, view);
     return pixelsApart(join.rounding, nearest, view, pyramid_.depthBuffer()) > settings_.join_rounding ||
-           join.rounding > kDepthRounding * std::max(nearest, view.near);
+           join.rounding > kDepthRounding * std::max(nearest, view.z_near);
   };
   // Most joins end here: none of their members is so near.
   const Vec3d from_origin = join.origin - data.origin;
@@ -155,7 +155,7 @@ void WorldEye::listJoins(const WorldData& data, const View& view) {
       nearest = std::min(nearest, nearestDepth(joined.surfaces.object_bounds[object.value], own));
     }
     if (!of_join_[join].empty()) {
-      const bool before_eye = !view.orthographic && !(nearest > view.near);
+      const bool before_eye = !view.orthographic && !(nearest > view.z_near);
       const double inverse = view.orthographic ? -nearest : 1.0 / nearest;
       in_order_.push_back(
           {join, true, before_eye ? std::numeric_limits<float>::infinity() : static_cast<float>(inverse)});

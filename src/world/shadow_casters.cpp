@@ -25,13 +25,13 @@ constexpr float kAnyDepth = -std::numeric_limits<float>::infinity();  // recipro
 // infinity.
 Box boxAround(const View& view) {
   Box box;
-  if (!std::isfinite(view.far)) {
+  if (!std::isfinite(view.z_far)) {
     constexpr float kFar = std::numeric_limits<float>::infinity();
     return {{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};
   }
   const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   double size = 0.0;
-  for (const double depth : {view.near, view.far}) {
+  for (const double depth : {view.z_near, view.z_far}) {
     const double spread = high * (view.orthographic ? 1.0 : depth);
     for (const double x : {view.shift_x - 1.0, view.shift_x + 1.0}) {
       for (const double y : {view.shift_y - 1.0, view.shift_y + 1.0}) {
@@ -174,7 +174,7 @@ bool ShadowCasters::Impl::isBeforeSomething(const PixelBox& image) const {
 void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, const PixelView& map,
                                  std::span<const View> views) {
   const Light from{light_view.orthographic, light_view.eye - data.origin, light_view.forward,
-                   light_view.far - light_view.near};
+                   light_view.z_far - light_view.z_near};
   frusta.clear();
   for (View view : views) {
     view.eye = view.eye - data.origin;

@@ -40,7 +40,8 @@ void viewsAhead(const View& view, const CameraMotion& motion, double seconds, st
       continue;
     }
     // What is at the side of the frustum moves across it by what the eye may be off.
-    const double depth = std::isfinite(view.far) ? std::sqrt(std::max(view.near, 0.01) * view.far) : 10.0;
+    const double depth =
+        std::isfinite(view.z_far) ? std::sqrt(std::max(view.z_near, 0.01) * view.z_far) : 10.0;
     const double angle = rate * step + std::atan(motion.spread * time / depth);
     const double high = wider(view.tan_half_fovy, angle),
                  wide = wider(view.tan_half_fovy * view.aspect, angle);

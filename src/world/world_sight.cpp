@@ -50,8 +50,8 @@ bool aimAt(const Vec3d& from, const Box& box, const Vec3d& origin, double near, 
   constexpr double kMargin = 1.001, kNarrowest = 1e-4;
   view.tan_half_fovy = std::max(kMargin * high, kNarrowest);
   view.aspect = std::max(kMargin * wide, kNarrowest) / view.tan_half_fovy;
-  view.near = near;
-  view.far = kMargin * far;
+  view.z_near = near;
+  view.z_far = kMargin * far;
   return nearest > near && std::max(wide, high) < kWidest && makeUsable(view) == nullptr;
 }
 
@@ -72,7 +72,7 @@ WorldSight& WorldSight::operator=(WorldSight&&) noexcept = default;
 Visibility WorldSight::look(const World& world, const Vec3d& from_world, const Box& box_from_origin,
                             std::span<const InstanceId> ignored) {
   View view;
-  if (!aimAt(from_world, box_from_origin, world.data_->origin, impl_->settings.near, view)) {
+  if (!aimAt(from_world, box_from_origin, world.data_->origin, impl_->settings.near_distance, view)) {
     return Visibility::kPartial;
   }
   return impl_->eye.look(*world.data_, view, box_from_origin, ignored);

@@ -61,7 +61,7 @@ TEST(TreeShape, TellsOfEveryPointWhatRaysTell) {
         RayAnswer answer = RayAnswer::kClear;
         for (const OraclePolygon& polygon : scene.polygons) {
           const RayAnswer one =
-              castAt(polygon, scene.view.eye, point, scene.view.near, scene.view.forward, 1e-3);
+              castAt(polygon, scene.view.eye, point, scene.view.z_near, scene.view.forward, 1e-3);
           answer = one == RayAnswer::kBlocked || answer == RayAnswer::kBlocked ? RayAnswer::kBlocked
                    : one == RayAnswer::kUndecided                              ? one
                                                                                : answer;

@@ -207,7 +207,7 @@ TEST(Culler, NodesOfManyTrianglesAreTestedWithALargeMinimumCost) {
   const OccluderSet wall = makeOccluders(polygons);
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.near = 0.1;
+  view.z_near = 0.1;
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, triangles, {.kind = kind, .max_leaf_objects = 1});
     for (auto [name, settings, stands_for_method] : kStructures) {
@@ -271,7 +271,7 @@ TEST(Culler, BoxesInsideTheFrustumAreNotComparedWithItsPlanes) {
   const Box all = sceneBounds(city().scene.view());
   view.eye = Vec3d(center(all)) + Vec3d(0, 5000, 1);
   setOrientation(view, {0, -1, 0}, {0, 0, 1});
-  view.far = 1e5;
+  view.z_far = 1e5;
   for (const auto variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
     AnyCuller culler = city().culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = 0});
@@ -424,8 +424,8 @@ struct WallScene {
     setOrientation(view, {0, 0, -1}, {0, 1, 0});
     view.tan_half_fovy = 2.0;
     view.aspect = 1.0;
-    view.near = 0.1;
-    view.far = 100.0;
+    view.z_near = 0.1;
+    view.z_far = 100.0;
   }
 };
 

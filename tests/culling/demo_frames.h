@@ -127,8 +127,8 @@ inline std::vector<View> jumps(const DemoScene& demo, std::uint64_t seed, std::s
     view.orthographic = i % 2 == 1;
     view.ortho_height = in(5.0, 60.0);
     view.tan_half_fovy = in(0.2, 1.2);
-    view.near = in(0.05, 1.0);
-    view.far = in(50.0, 1000.0);
+    view.z_near = in(0.05, 1.0);
+    view.z_far = in(50.0, 1000.0);
     views.push_back(view);
   }
   return views;

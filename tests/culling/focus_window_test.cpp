@@ -25,8 +25,8 @@ View anyView(Random& random) {
   view.tan_half_fovy = random.in(0.2, 1.2);
   view.orthographic = random.in(0, 3) < 1;
   view.ortho_height = random.in(1.0, 50.0);
-  view.near = random.in(0.05, 1.0);
-  view.far = 500.0;
+  view.z_near = random.in(0.05, 1.0);
+  view.z_far = 500.0;
   if (random.in(0, 2) < 1) {
     view.shift_x = random.in(-1.5, 1.5);
     view.shift_y = random.in(-1.5, 1.5);
@@ -57,8 +57,8 @@ TEST(FocusWindow, HasTheEyeTheAxesAndTheNearPlaneOfItsView) {
     EXPECT_EQ(window.forward, view.forward);
     EXPECT_EQ(window.right, view.right);
     EXPECT_EQ(window.up, view.up);
-    EXPECT_EQ(window.near, view.near);
-    EXPECT_EQ(window.far, view.far);
+    EXPECT_EQ(window.near, view.z_near);
+    EXPECT_EQ(window.far, view.z_far);
     EXPECT_TRUE(validate(window).has_value());
   }
 }

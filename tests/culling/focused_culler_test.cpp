@@ -62,7 +62,7 @@ struct Street {
     for (int frame = 0; frame < 6; ++frame) {
       View view = test::viewFrom({random.in(-0.2, 0.2), random.in(-0.2, 0.2), -0.3 * frame},
                                  {random.in(-0.1, 0.1), random.in(-0.05, 0.05), -1.0});
-      view.near = 1.0;
+      view.z_near = 1.0;
       views.push_back(view);
     }
   }

@@ -83,28 +83,28 @@ TEST_P(OddViews, ScaledAndMirroredAxesAreTheSameView) {
 }
 
 TEST_P(OddViews, WithoutAFarPlaneTheSameIsHidden) {
-  scene_.view.far = kInfinite;
+  scene_.view.z_far = kInfinite;
   expectVisible(scene_.view, kSeen, "infinite far distance");
 }
 
 TEST_P(OddViews, WithoutANearPlaneTheSameIsHiddenAndWhatIsAtTheEyeIsKept) {
-  scene_.view.near = 0.0;
+  scene_.view.z_near = 0.0;
   expectVisible(scene_.view, kSeenFromNearDistanceZero, "near distance 0");
-  scene_.view.far = kInfinite;
+  scene_.view.z_far = kInfinite;
   expectVisible(scene_.view, kSeenFromNearDistanceZero, "near distance 0, infinite far distance");
 }
 
 TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   std::vector<View> views;
   for (double View::*member :
-       {&View::near, &View::far, &View::aspect, GetParam() ? &View::ortho_height : &View::tan_half_fovy}) {
+       {&View::z_near, &View::z_far, &View::aspect, GetParam() ? &View::ortho_height : &View::tan_half_fovy}) {
     for (const double bad : {-1.0, kOddNumber}) {
       views.push_back(scene_.view);
       views.back().*member = bad;
     }
   }
   views.push_back(scene_.view);
-  views.back().near = 2000.0;  // beyond the far plane
+  views.back().z_near = 2000.0;  // beyond the far plane
   for (Vec3d View::*vector : {&View::eye, &View::right, &View::up, &View::forward}) {
     views.push_back(scene_.view);
     (views.back().*vector).x = kOddNumber;

@@ -301,8 +301,8 @@ struct RowScene {
     setOrientation(view, {0, 0, -1}, {0, 1, 0});
     view.tan_half_fovy = 10.0;
     view.aspect = 1.0;
-    view.near = 0.1;
-    view.far = 100.0;
+    view.z_near = 0.1;
+    view.z_far = 100.0;
   }
   View from(const Vec3d& eye) const {
     View moved = view;

@@ -61,7 +61,7 @@ Checked prove(const Scene& scene, const View& view, const DepthBufferView& buffe
         continue;
       }
       const double value = buffer.at(x, y), depth = view.orthographic ? -value : 1.0 / value;
-      if (depth < view.far / 1.1) {
+      if (depth < view.z_far / 1.1) {
         pixels.push_back(addPixel(with_pixels, glass, view, buffer.width, buffer.height, x, y, depth));
       }
     }
@@ -204,7 +204,7 @@ TEST(SurfaceProbes, AClosedRoomHidesAllThatLiesBehindItsWalls) {
   View view = frontView();
   view.eye = {0.25, -0.5, 1.0};
   for (const double near : {0.01, 0.1, 2.0, 7.5}) {
-    view.near = near;
+    view.z_near = near;
     const Checked checked = check(sceneOf(corners), view, 24, 24);
     EXPECT_TRUE(checked.right());
     EXPECT_TRUE(checked.covered == 24u * 24u || near > 7.0) << "the near plane leaves a corner of the room";
@@ -213,7 +213,7 @@ TEST(SurfaceProbes, AClosedRoomHidesAllThatLiesBehindItsWalls) {
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     std::swap(corners[i + 1], corners[i + 2]);
   }
-  view.near = 0.1;
+  view.z_near = 0.1;
   EXPECT_EQ(check(sceneOf(corners), view, 24, 24).covered, 0u);
 }
 
@@ -223,7 +223,7 @@ TEST(SurfaceProbes, TheNearPlaneCutsThroughEverything) {
       none);
   for (const double near : {5.0, 6.0, 8.0, 10.0, 12.0, 13.5}) {
     View view = frontView();
-    view.near = near;
+    view.z_near = near;
     EXPECT_TRUE(check(scene, view, 32, 32).right()) << near;
     view.orthographic = true;
     EXPECT_TRUE(check(scene, view, 32, 32).right()) << near;
@@ -451,12 +451,12 @@ TEST(SurfaceProbes, WhatLiesBeyondTheFarPlaneIsNoNearerThanItIs) {
   }
   addTriangles(scene, addMaterial(scene, Opacity::kOpaque, false), corners);
   View view = frontView();
-  view.near = 0.1;
+  view.z_near = 0.1;
   view.tan_half_fovy = 0.2;
   view.aspect = 16.0 / 9.0;
   Rasteriser raster({.width = 320, .height = 180});
   for (const double far : {130.0, 1000.0}) {
-    view.far = far;
+    view.z_far = far;
     raster.begin(view);
     const SurfaceSet surfaces = findSurfaces(scene.view());
     raster.draw(surfaces, surfaces.objects, kEverything);
@@ -479,7 +479,7 @@ TEST(SurfaceProbes, WhatLiesBeyondTheFarPlaneIsNoNearerThanItIs) {
 
 TEST(SurfaceProbes, AVertexJustBeforeTheNearPlaneIsCutOff) {
   const View view = frontView();
-  const double clip = view.near * (1.0 + 1e-6);
+  const double clip = view.z_near * (1.0 + 1e-6);
   for (float depth = static_cast<float>(clip - 4.5e-7); depth < clip; depth = std::nextafter(depth, 1.0f)) {
     const std::array<Vec3f, 3> corners{Vec3f(-0.12f, 0.12f, -depth), Vec3f(-22.0f, -22.0f, -20.0f),
                                        Vec3f(0.12f, -0.12f, -depth)};
@@ -495,11 +495,11 @@ TEST(SurfaceProbes, TrianglesWithVerticesAlmostInTheNearPlane) {
   std::size_t covered = 0;
   for (int n = 0; n < 400; ++n) {
     View view = frontView();
-    view.near = n % 2 == 0 ? 0.1 : 0.25;
+    view.z_near = n % 2 == 0 ? 0.1 : 0.25;
     view.orthographic = n % 4 == 0;
     view.ortho_height = 4.0;
-    view.far = 1e6;
-    const double clip = view.near * (1.0 + 1e-6), reach = std::exp2(number(-2.0, 14.0));
+    view.z_far = 1e6;
+    const double clip = view.z_near * (1.0 + 1e-6), reach = std::exp2(number(-2.0, 14.0));
     std::vector<Vec3f> vertices, corners;
     for (std::uint32_t i = 0; i < 16; ++i) {
       const double depths[] = {number(-reach, reach), number(0.0, 2.0), number(0.0, reach),
@@ -530,8 +530,8 @@ TEST(SurfaceProbes, ANearDistanceOfZeroLeavesRoomForRounding) {
     View view = frontView();
     view.orthographic = true;
     view.ortho_height = 2000.0;
-    view.near = 0.0;
-    view.far = 1000.0;
+    view.z_near = 0.0;
+    view.z_far = 1000.0;
     setOrientation(view, {number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)}, {0.0, 1.0, 0.0});
     const Vec3d base{std::floor(number(-1e3, 1e3)), std::floor(number(-1e3, 1e3)),
                      std::floor(number(-1e3, 1e3))};
@@ -562,7 +562,7 @@ TEST(SurfaceProbes, ANearDistanceOfZeroLeavesRoomForRounding) {
   View view = frontView();
   view.orthographic = true;
   view.ortho_height = 20.0;
-  view.near = 0.0;
+  view.z_near = 0.0;
   const Scene beyond = sheet(
       4, 24.0f, 10.0f, [](float x, float) { return 0.1f * x; }, none);
   const Checked checked = check(beyond, view, 16, 16);
@@ -593,7 +593,7 @@ TEST(SurfaceProbes, WhatRestsIsDrawnWhereThatIsAskedFor) {
     Rasteriser raster({.width = 64, .height = 64});
     SurfaceDrawing drawing = kEverything;
     View view = frontView();
-    view.far = 1e5;
+    view.z_far = 1e5;
     view.eye.z = 3000.0;  // the wall has one pixel, which is no use
     raster.begin(view);
     raster.draw(surfaces, surfaces.objects, drawing);
@@ -833,7 +833,7 @@ TEST(SurfaceProbes, AfterALongWayNoStepIsLost) {
   drawing.draw_resting = true;
   drawing.step = ViewStep::kNext;
   View view = frontView();
-  view.far = 1e5;
+  view.z_far = 1e5;
   std::size_t covered = 0;
   const auto draw = [&](const Vec3d& eye) {
     view.eye = eye;
@@ -996,7 +996,7 @@ TEST_P(RandomSurfaces, HideWhatTheyCover) {
     View view = frontView();
     view.eye = {number(-3.0, 3.0), number(-3.0, 3.0), number(-13.0, 3.0)};
     setOrientation(view, {number(-1.0, 1.0), number(-1.0, 1.0), -1.0}, {0.0, 1.0, 0.0});
-    view.near = number(0.0, 1.0) < 0.5 ? 0.1 : number(0.5, 8.0);
+    view.z_near = number(0.0, 1.0) < 0.5 ? 0.1 : number(0.5, 8.0);
     view.orthographic = GetParam();
     view.ortho_height = 20.0;
     const Checked checked = check(scene, view, 1 + static_cast<std::uint32_t>(number(0.0, 40.0)), 24);
@@ -1170,7 +1170,7 @@ TEST_P(RandomSurfaces, HideWhatTheyCoverHoweverTheyAreStretchedAndMirrored) {
     View view = frontView();
     view.orthographic = GetParam();
     view.ortho_height = 20.0;
-    view.near = seed % 3 == 0 ? 3.0 : view.near;
+    view.z_near = seed % 3 == 0 ? 3.0 : view.z_near;
     view.eye = transformPoint(m, {eighths(4.0), eighths(4.0), 0.0});
     setOrientation(view, transformDirection(m, Vec3d(eighths(0.5), eighths(0.5), -1.0)),
                    {number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)});

@@ -56,8 +56,9 @@ Motion randomMotion(test::Random& random) {
   setOrientation(view, random.point(1.0), random.point(1.0));
   view.tan_half_fovy = random.in(0.1, 1.2);
   view.aspect = random.in(0.5, 2.0);
-  view.near = size * random.in(0.01, 1.0);
-  view.far = random.below(4) == 0 ? std::numeric_limits<double>::infinity() : size * random.in(10.0, 1000.0);
+  view.z_near = size * random.in(0.01, 1.0);
+  view.z_far =
+      random.below(4) == 0 ? std::numeric_limits<double>::infinity() : size * random.in(10.0, 1000.0);
   if (random.below(3) == 0) {
     view.shift_x = random.in(-0.9, 0.9);
     view.shift_y = random.in(-0.9, 0.9);
@@ -77,8 +78,8 @@ View strayed(const View& view, const Motion& motion, test::Random& random) {
   setOrientation(other, view.forward + random.point(most), view.up + random.point(most));
   other.tan_half_fovy *= 1.0 + random.in(-most, most);
   other.aspect *= 1.0 + random.in(-most, most);
-  other.near *= 1.0 + random.in(-most, most);
-  other.far *= 1.0 + random.in(-most, most);
+  other.z_near *= 1.0 + random.in(-most, most);
+  other.z_far *= 1.0 + random.in(-most, most);
   return other;
 }
 
@@ -88,9 +89,9 @@ Vec3d pointOf(const View& view, test::Random& random, double farthest) {
     const std::uint32_t kind = random.below(3);
     return kind == 0 ? -1.0 : kind == 1 ? 1.0 : random.in(-1.0, 1.0);
   };
-  const double far = std::min(view.far, farthest);
+  const double far = std::min(view.z_far, farthest);
   const std::uint32_t kind = random.below(3);
-  const double depth = kind == 0 ? view.near : kind == 1 ? far : random.in(view.near, far);
+  const double depth = kind == 0 ? view.z_near : kind == 1 ? far : random.in(view.z_near, far);
   return view.eye +
          (view.forward + view.right * ((view.shift_x + side()) * view.tan_half_fovy * view.aspect) +
           view.up * ((view.shift_y + side()) * view.tan_half_fovy)) *
@@ -103,7 +104,7 @@ bool inVolume(const View& view, const Vec3d& point) {
   const double x = dot(v, view.right), y = dot(v, view.up), z = dot(v, view.forward);
   const double rounding = 1e-12 * (length(v) + length(view.eye));
   const double width = view.tan_half_fovy * view.aspect, height = view.tan_half_fovy;
-  return z >= view.near - rounding && z <= view.far + rounding &&
+  return z >= view.z_near - rounding && z <= view.z_far + rounding &&
          std::abs(x - view.shift_x * width * z) <= width * z + rounding * (1.0 + width) &&
          std::abs(y - view.shift_y * height * z) <= height * z + rounding * (1.0 + height);
 }
@@ -151,7 +152,7 @@ TEST(ViewsToCome, TheWideViewShowsAllOfEveryViewThatIsHeld) {
             << "seed " << seed;
         EXPECT_LE(nearDistance(view), viewers.near_distance) << "seed " << seed;
         for (int k = 0; k < 12; ++k) {
-          const Vec3d point = pointOf(view, random, 1e5 * view.near);
+          const Vec3d point = pointOf(view, random, 1e5 * view.z_near);
           ++points;
           EXPECT_TRUE(inVolume(wide, point)) << "seed " << seed << ", frame " << frame << ", view " << n;
         }
@@ -186,11 +187,11 @@ TEST(ViewsToCome, ViewsThatLeaveWhatWasPlannedAreNotContained) {
     setOrientation(others[2], -at.forward, at.up);
     setOrientation(others[3], at.right, at.up);
     others[4].tan_half_fovy *= 3.0;
-    others[5].near *= 1.5;
-    others[6].far = 2.0 * at.far + 10.0 * path;
+    others[5].z_near *= 1.5;
+    others[6].z_far = 2.0 * at.z_far + 10.0 * path;
     others[7].orthographic = true;
     for (std::size_t i = 0; i < others.size(); ++i) {
-      if (i != 6 || std::isfinite(at.far)) {
+      if (i != 6 || std::isfinite(at.z_far)) {
         EXPECT_FALSE(views.contain(others[i])) << "motion " << n << ", view " << i;
       }
     }

@@ -117,7 +117,7 @@ TEST(VisibilityOctreeCulling, AsksForTheViewsEyeAndTheCornerOfItsNearPlane) {
     const Vec3d corner =
         view.forward + view.up * view.tan_half_fovy + view.right * (view.tan_half_fovy * view.aspect);
     EXPECT_EQ(sets.last_eye, view.eye);
-    EXPECT_NEAR(sets.last_near_distance, length(corner * view.near), 1e-12);
+    EXPECT_NEAR(sets.last_near_distance, length(corner * view.z_near), 1e-12);
   }
   EXPECT_EQ(sets.finds, 10u) << "one a frame";
 }
@@ -303,8 +303,8 @@ class TrueSets {
     View side = view;
     side.tan_half_fovy = 1.0;
     side.aspect = 1.0;
-    side.near = near;
-    side.far = 1e5;
+    side.z_near = near;
+    side.z_far = 1e5;
     const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int direction = 0; direction < 6; ++direction) {
       const Vec3d axis = axes[direction / 2] * (direction % 2 == 0 ? 1.0 : -1.0);

@@ -78,8 +78,8 @@ View viewFromFront(bool orthographic = false) {
   View view = test::viewFromFront(orthographic);
   view.ortho_height = 12.0;
   view.aspect = 1.25;
-  view.near = 0.5;
-  view.far = 50.0;
+  view.z_near = 0.5;
+  view.z_far = 50.0;
   return view;
 }
 

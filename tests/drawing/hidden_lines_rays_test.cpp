@@ -53,7 +53,7 @@ class Rays {
       const Vec3d to =
           point + view_.right * (beside * std::cos(angle)) + view_.up * (beside * std::sin(angle));
       const ViewRay ray = rayTo(view_, to);
-      const double reach = depthOf(view_, to) - view_.near;
+      const double reach = depthOf(view_, to) - view_.z_near;
       batch[i] = {Vec3f(ray.origin), Vec3f(ray.direction), static_cast<float>(reach)};
     }
     hits_.clear();
@@ -63,7 +63,7 @@ class Rays {
     first.fill(1.0);
     for (const RayHit& hit : hits_) {
       if (scene_.materialOf(scene_.objects[hit.object.value]).opaque()) {
-        first[hit.ray] = std::min(first[hit.ray], (static_cast<double>(hit.t) + view_.near) / depth);
+        first[hit.ray] = std::min(first[hit.ray], (static_cast<double>(hit.t) + view_.z_near) / depth);
       }
     }
     return {*std::min_element(first.begin(), first.end()), *std::max_element(first.begin(), first.end())};
@@ -160,8 +160,8 @@ View fromOutside(const Scene& scene, bool orthographic, double angle) {
   setOrientation(view, center(bounds) - view.eye, {0, 1, 0});
   view.orthographic = orthographic;
   view.ortho_height = 0.7 * size;
-  view.near = 0.01 * size;
-  view.far = 3.0 * size;
+  view.z_near = 0.01 * size;
+  view.z_far = 3.0 * size;
   return view;
 }
 

@@ -295,8 +295,8 @@ TEST(HiddenLines, TakeWhatIsNotFiniteForNothing) {
   EXPECT_TRUE(sketch.pieces(squareView(), {5, 1000000, LineKind::kCrease}).empty());
   std::vector<View> views(6, squareView());
   views[0].eye.x = nan;
-  views[1].near = 0.0;
-  views[2].far = views[2].near;
+  views[1].z_near = 0.0;
+  views[2].z_far = views[2].z_near;
   views[3].tan_half_fovy = infinity;
   views[4].aspect = 0.0;
   views[5].forward.y = nan;

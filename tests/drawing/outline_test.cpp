@@ -86,7 +86,7 @@ bool raySees(const SceneView& scene, const View& view, const PagePoint& p, doubl
     const auto isLeft = [&](const Vec3d& s, const Vec3d& e) {
       return dot(cross(e - s, hit - s), normal) >= 0;
     };
-    if (t >= view.near && t <= view.far && isLeft(a, b) && isLeft(b, c) && isLeft(c, a)) {
+    if (t >= view.z_near && t <= view.z_far && isLeft(a, b) && isLeft(b, c) && isLeft(c, a)) {
       return true;
     }
   }
@@ -213,7 +213,7 @@ TEST(Outline, IsOnThePageWhereTheNearPlaneIsNearerThanRoundingTells) {
   OneObject both = square;
   both.add({0, 0, 12}, {0, 0, 8}, {1, 1, 8});  // one side goes through the eye: it is seen edge on
   View view = viewFromFront();
-  view.near = 1e-300;
+  view.z_near = 1e-300;
   EXPECT_EQ(both.outline(view), square.outline(view));
 }
 
@@ -222,7 +222,7 @@ TEST(Outline, EndsAtTheFarPlane) {
   object.addSquare({0, 0, -95}, 5);
   View view = viewFromFront();
   EXPECT_EQ(object.outline(view).size(), 0u);
-  view.far = 110.0;
+  view.z_far = 110.0;
   EXPECT_EQ(object.outline(view).size(), 1u);
 }
 
@@ -318,8 +318,8 @@ TEST(Outline, RefusesPagesAndViewsWithoutSize) {
     EXPECT_FALSE(isDrawable(view, height)) << height;
   }
   for (const auto change : {+[](View& v) { v.aspect = 0; }, +[](View& v) { v.aspect = kNan; },
-                            +[](View& v) { v.tan_half_fovy = kNan; }, +[](View& v) { v.near = 0; },
-                            +[](View& v) { v.far = v.near; }, +[](View& v) { v.eye.x = kNan; }}) {
+                            +[](View& v) { v.tan_half_fovy = kNan; }, +[](View& v) { v.z_near = 0; },
+                            +[](View& v) { v.z_far = v.z_near; }, +[](View& v) { v.eye.x = kNan; }}) {
     View changed = view;
     change(changed);
     EXPECT_FALSE(isDrawable(changed, kHeight));

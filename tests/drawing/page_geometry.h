@@ -20,8 +20,8 @@ inline View viewFromFront(bool orthographic = false) {
   view.tan_half_fovy = 0.5;
   view.ortho_height = 10.0;
   view.aspect = 1.0;
-  view.near = 0.1;
-  view.far = 100.0;
+  view.z_near = 0.1;
+  view.z_far = 100.0;
   return view;
 }
 

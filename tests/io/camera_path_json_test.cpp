@@ -26,8 +26,8 @@ TEST(CameraPathJson, ReadsEveryKey) {
   EXPECT_EQ(path->fovy_deg, 50.0);
   EXPECT_EQ(path->width, 640u);
   EXPECT_EQ(path->height, 480u);
-  EXPECT_EQ(path->near, 0.25);
-  EXPECT_EQ(path->far, 500.0);
+  EXPECT_EQ(path->z_near, 0.25);
+  EXPECT_EQ(path->z_far, 500.0);
   EXPECT_EQ(path->shift_x, 0.0);
   EXPECT_EQ(path->shift_y, 0.0);
   ASSERT_EQ(path->frames.size(), 1u);
@@ -69,8 +69,8 @@ TEST(CameraPathJson, WritesWhatItReadsBackBitForBit) {
   CameraPath path;
   path.name = "a \"quoted\" walk";
   path.fovy_deg = 1.0 / 3.0;
-  path.near = 0.1;
-  path.far = 12345.678901234567;
+  path.z_near = 0.1;
+  path.z_far = 12345.678901234567;
   path.frames = {{{5e6 + 0.001, -0.0, 1e-300}, {0.1, 0.2, 0.3}, {0, 1, 0}},
                  {{1, 2, 3}, {1, 0, 0}, {0, 0, 1}}};
   const Result<CameraPath> again = parseCameraPath(toJson(path), "again");
@@ -78,7 +78,7 @@ TEST(CameraPathJson, WritesWhatItReadsBackBitForBit) {
   EXPECT_EQ(again->name, path.name);
   EXPECT_EQ(again->fovy_deg, path.fovy_deg);
   EXPECT_EQ(again->ortho_height, 0.0);
-  EXPECT_EQ(again->far, path.far);
+  EXPECT_EQ(again->z_far, path.z_far);
   ASSERT_EQ(again->frames.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(again->frames[i].eye, path.frames[i].eye);

@@ -62,8 +62,8 @@ TEST(GltfCamera, AStillCameraIsAPathOfOneFrame) {
   const CameraPath& path = scene.paths[0];
   EXPECT_EQ(path.name, "eye");
   EXPECT_NEAR(path.fovy_deg, 90.0, 1e-9);
-  EXPECT_EQ(path.near, 0.5);
-  EXPECT_EQ(path.far, 100.0);
+  EXPECT_EQ(path.z_near, 0.5);
+  EXPECT_EQ(path.z_far, 100.0);
   EXPECT_EQ(path.width, 2 * path.height);
   ASSERT_EQ(path.frames.size(), 1u);
   expectNear(path.frames[0].eye, {1, 2, 3});
@@ -79,8 +79,8 @@ TEST(GltfCamera, AnEndlessCameraReachesTheWholeScene) {
   const int mesh = glb.addMesh({Glb::primitive(glb.addPositions({0, 0, -500, 1, 0, -500, 0, 1, -500}))});
   glb.json["nodes"][1]["mesh"] = mesh;
   const CameraPath path = imported(glb.bytes()).paths.at(0);
-  EXPECT_GE(path.far, 1500.0);
-  EXPECT_LT(path.far, 2000.0);
+  EXPECT_GE(path.z_far, 1500.0);
+  EXPECT_LT(path.z_far, 2000.0);
 }
 
 TEST(GltfCamera, AnOrthographicCameraKeepsItsHeight) {
@@ -90,9 +90,9 @@ TEST(GltfCamera, AnOrthographicCameraKeepsItsHeight) {
   EXPECT_EQ(path.ortho_height, 6.0);
   EXPECT_EQ(path.width, 2 * path.height);
   // The near plane stays at the node, the far plane 50 metres beyond, though near must be positive.
-  EXPECT_GT(path.near, 0.0);
-  EXPECT_NEAR(path.frames.at(0).eye.z - path.near, 0.0, 1e-12);
-  EXPECT_NEAR(path.frames.at(0).eye.z - path.far, -50.0, 1e-12);
+  EXPECT_GT(path.z_near, 0.0);
+  EXPECT_NEAR(path.frames.at(0).eye.z - path.z_near, 0.0, 1e-12);
+  EXPECT_NEAR(path.frames.at(0).eye.z - path.z_far, -50.0, 1e-12);
 }
 
 TEST(GltfCamera, AnAnimatedAncestorMovesTheCamera) {

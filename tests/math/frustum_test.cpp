@@ -26,8 +26,8 @@ View randomView(Random& random, bool orthographic, double scale) {
     view.shift_x = random.in(-2.0, 2.0);
     view.shift_y = random.in(-2.0, 2.0);
   }
-  view.near = random.in(0.01, 1.0) * scale;
-  view.far = view.near + random.in(1.0, 60.0) * scale;
+  view.z_near = random.in(0.01, 1.0) * scale;
+  view.z_far = view.z_near + random.in(1.0, 60.0) * scale;
   return view;
 }
 
@@ -65,7 +65,7 @@ TEST_P(FrustumOfView, HasUnitNormalsThatPointInwards) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
     const View view = randomView(random, GetParam().orthographic, GetParam().scale);
-    const double depth = 0.5 * (view.near + view.far);
+    const double depth = 0.5 * (view.z_near + view.z_far);
     const double half_height = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
     const Vec3d inside = view.eye + view.forward * depth +
                          view.right * (view.shift_x * half_height * view.aspect) +
@@ -85,8 +85,8 @@ TEST_P(FrustumOfView, HoldsThePointsThatTheMatrixPutsIntoTheClipVolume) {
     const View view = randomView(random, GetParam().orthographic, scale);
     const Frustum frustum = frustumOf(view);
     for (int i = 0; i < 200; ++i) {
-      const Vec3d point =
-          view.eye + view.forward * random.in(-0.2 * view.far, 1.2 * view.far) + random.point(30.0) * scale;
+      const Vec3d point = view.eye + view.forward * random.in(-0.2 * view.z_far, 1.2 * view.z_far) +
+                          random.point(30.0) * scale;
       bool in_planes = true;
       for (const Plane& plane : frustum.planes) {
         in_planes &= plane.evaluate(point) >= 0.0;
@@ -139,7 +139,7 @@ TEST_P(FrustumOfView, CallsABoxInsideOnlyWithAllItsCorners) {
     const View view = randomView(random, GetParam().orthographic, scale);
     const Frustum frustum = frustumOf(view);
     for (int i = 0; i < 60; ++i) {
-      const Vec3d middle = view.eye + view.forward * random.in(view.near, view.far);
+      const Vec3d middle = view.eye + view.forward * random.in(view.z_near, view.z_far);
       const Vec3d half = abs(random.point(2.0)) * scale;
       const Box box{Vec3f(middle - half), Vec3f(middle + half)};
       std::uint8_t mask = kAllFrustumPlanes;

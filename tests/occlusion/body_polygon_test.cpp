@@ -68,7 +68,7 @@ class Judge {
         continue;
       }
       const Real depth = dot(normal, t.a - from) / facing;
-      if (depth >= view_.near * (1 - Real{1e-14})) {
+      if (depth >= view_.z_near * (1 - Real{1e-14})) {
         const Real reciprocal_depth = view_.orthographic ? -depth : 1 / depth;
         best = std::max(best.value_or(reciprocal_depth), reciprocal_depth);
       }
@@ -195,7 +195,7 @@ struct BodyScene {
     const Vec3d x = normalized(sightline::cross(normal, random.point(1.0)));
     double depth = random.in(5.0, 12.0);
     if (place == Place::kAcrossNear) {
-      view.near = depth + random.in(-1.0, 1.0);
+      view.z_near = depth + random.in(-1.0, 1.0);
     } else if (place == Place::kAroundEye) {
       depth = 0.0;
     }
@@ -508,7 +508,7 @@ TEST(BodyPolygons, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
     for (int what = 0; what < 7; ++what) {
       View view = viewFrom({4, 5, 0}, {-0.6, -0.6, -1});
       double* const fields[] = {&view.aspect, &view.right.x, &view.up.y,         &view.forward.z,
-                                &view.eye.x,  &view.near,    &view.tan_half_fovy};
+                                &view.eye.x,  &view.z_near,  &view.tan_half_fovy};
       *fields[what] = bad;
       Rasteriser rasteriser({.width = 32, .height = 32});
       rasteriser.begin(view);

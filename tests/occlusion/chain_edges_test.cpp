@@ -60,7 +60,7 @@ SurfaceSet randomChains(test::ViewRandom& random, const View& view, std::size_t 
     chain.first_vertex = static_cast<std::uint32_t>(set.chain_vertices.size());
     chain.vertex_count = vertices;
     const double depth =
-        random.below(8) == 0 ? random.in(-2.0, 2.0) * view.near : random.sized(view.near, 300.0);
+        random.below(8) == 0 ? random.in(-2.0, 2.0) * view.z_near : random.sized(view.z_near, 300.0);
     Vec3d at = view.eye + view.forward * depth +
                (view.right * random.in(-1.0, 1.0) + view.up * random.in(-1.0, 1.0)) * std::abs(depth);
     for (std::uint32_t k = 0; k < vertices; ++k) {
@@ -78,7 +78,7 @@ SurfaceSet randomChains(test::ViewRandom& random, const View& view, std::size_t 
 std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const PixelView& view, std::size_t first,
                               std::size_t count) {
   ChainEdges edges;
-  edges.begin(set, view, view.near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
+  edges.begin(set, view, view.z_near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
   for (std::size_t i = first; i < first + count; ++i) {
     edges.add(static_cast<std::uint32_t>(i), 1);
   }
@@ -122,7 +122,7 @@ TEST(ChainEdges, AreTheSameWithEveryInstructionSetAndInAnyCompany) {
       const std::vector<EdgeBits> one = edgesOf(set, view, i, 1);
       alone.insert(alone.end(), one.begin(), one.end());
       for (const Vec3f& vertex : set.verticesOf(set.chains[i])) {
-        cut += view.toCamera(Vec3d(vertex) - view.eye).z < view.near ? 1 : 0;
+        cut += view.toCamera(Vec3d(vertex) - view.eye).z < view.z_near ? 1 : 0;
       }
     }
     EXPECT_EQ(alone, all) << "view " << n << (cut > cut_before ? ", with cut edges" : "");
@@ -137,9 +137,9 @@ TEST(ChainEdges, NothingBeforeTheClipDepthHasAnEdge) {
   set.chains = {SurfaceChain{.first_vertex = 0, .vertex_count = 2}};
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.near = 1.0;
+  view.z_near = 1.0;
   EXPECT_TRUE(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).empty());
-  view.near = 0.25;
+  view.z_near = 0.25;
   EXPECT_EQ(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).size(), 1u);
 }
 

@@ -68,8 +68,8 @@ inline View viewOf(const Camera& camera, const Vec3d& eye, const Vec3d& forward,
   view.right = cross(forward, up);
   view.eye = eye;
   view.orthographic = camera.orthographic;
-  view.near = static_cast<double>(camera.near);
-  view.far = 1e4;
+  view.z_near = static_cast<double>(camera.near);
+  view.z_far = 1e4;
   const auto gx = static_cast<double>(camera.gx), gy = static_cast<double>(camera.gy);
   view.tan_half_fovy = 1.0 / gy;
   view.ortho_height = 2.0 * gy;

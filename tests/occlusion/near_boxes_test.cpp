@@ -42,7 +42,7 @@ Wide firstDepth(const View& view, const Box& box, Wide x, Wide y) {
   const Wide half_height = view.orthographic ? Wide{0.5} * view.ortho_height : Wide{view.tan_half_fovy};
   const Wide across = (x + view.shift_x) * half_height * view.aspect,
              along = (y + view.shift_y) * half_height;
-  Wide first = view.near, last = view.far;
+  Wide first = view.z_near, last = view.z_far;
   for (int axis = 0; axis < 3; ++axis) {
     const Wide beside = view.right[axis] * across + view.up[axis] * along;
     const Wide from = view.eye[axis] + (view.orthographic ? beside : 0);
@@ -118,7 +118,7 @@ TEST(NearBoxes, WhereTheyAreHiddenNoRayReachesThem) {
   for (std::uint64_t seed = 1; seed <= test::rounds(400u); ++seed) {
     ViewRandom random(seed);
     View view = randomView(random);
-    view.near = random.sized(1e-4, 0.1);
+    view.z_near = random.sized(1e-4, 0.1);
     const double size = view.orthographic ? view.ortho_height : 1.0;
     // Walls all around, in any position, not all of which overlap.
     std::vector<OraclePolygon> walls;

@@ -179,7 +179,7 @@ TEST(OcclusionTree, SingleSidedWallsHideNothingFromBehind) {
 
 TEST(OcclusionTree, WhatTheNearPlaneClipsHidesNothing) {
   View view = kLookingBack;
-  view.near = 5.5;
+  view.z_near = 5.5;
   for (const auto variant : kTreeVariants) {
     EXPECT_NE(ask(variant, view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}),
               Visibility::kHidden);

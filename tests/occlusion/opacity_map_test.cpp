@@ -118,7 +118,7 @@ TEST(OpacityMap, ThePapersCoverageHidesWhatIsSeenThroughAGap) {
 TEST(OpacityMap, BoxesThatReachTheNearPlaneAreNotHidden) {
   const std::vector<OraclePolygon> walls{wall(-9, 9, -9, 9, -5)};
   View view = kLookingBack;
-  view.near = 4.0;
+  view.z_near = 4.0;
   for (const float z : {-3.9f, -4.0f, 1.0f}) {
     EXPECT_NE(ask(view, walls, {{-1, -1, -12}, {1, 1, z}}), Visibility::kHidden) << z;
   }

@@ -20,8 +20,8 @@ View parallelView(double height) {
   View view = viewFrom({0, 0, 0}, {0, 0, -1});
   view.orthographic = true;
   view.ortho_height = height;
-  view.near = 0.0;
-  view.far = 1e9;
+  view.z_near = 0.0;
+  view.z_far = 1e9;
   return view;
 }
 

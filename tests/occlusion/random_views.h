@@ -26,8 +26,8 @@ inline View randomView(ViewRandom& random) {
   view.tan_half_fovy = random.sized(0.01, 5.0);
   view.ortho_height = random.sized(0.5, 500.0);
   view.aspect = random.sized(0.3, 3.0);
-  view.near = random.sized(1e-3, 1.0);
-  view.far = random.sized(50.0, 1e5);
+  view.z_near = random.sized(1e-3, 1.0);
+  view.z_far = random.sized(50.0, 1e5);
   if (random.below(2) == 0) {
     const double reach = random.sized(1e-6, 20.0);
     view.shift_x = random.in(-reach, reach);
@@ -39,7 +39,7 @@ inline View randomView(ViewRandom& random) {
 // Returns a box, in most cases in view; some are points, flat, huge, around the eye or across the near plane.
 inline Box randomBox(ViewRandom& random, const View& view) {
   const double depth =
-      random.below(5) == 0 ? random.in(-1.0, 3.0) * view.near : random.sized(view.near, 300.0);
+      random.below(5) == 0 ? random.in(-1.0, 3.0) * view.z_near : random.sized(view.z_near, 300.0);
   const double reach = view.orthographic ? view.ortho_height : view.tan_half_fovy * std::abs(depth);
   const Vec3d middle = view.eye + view.forward * depth +
                        view.right * (reach * (random.in(-1.0, 1.0) + view.shift_x)) +

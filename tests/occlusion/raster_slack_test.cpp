@@ -53,7 +53,7 @@ bool reaches(const Scene& scene, const View& view, const Vec3d& point) {
       continue;
     }
     const Wide t = determinant(q[0], q[1], q[2]) / (a + b + c);
-    if (t > 0 && t < 1 && t * depth >= view.near) {
+    if (t > 0 && t < 1 && t * depth >= view.z_near) {
       return false;
     }
   }
@@ -63,8 +63,8 @@ bool reaches(const Scene& scene, const View& view, const Vec3d& point) {
 View viewOf(const Vec3d& eye, double tan_half, double near) {
   View view = test::viewFrom(eye, {0, 0, -1});
   view.tan_half_fovy = tan_half;
-  view.near = near;
-  view.far = 100;
+  view.z_near = near;
+  view.z_far = 100;
   return view;
 }
 

@@ -216,8 +216,8 @@ bool crossesNearPlane(const View& view, const OraclePolygon& polygon) {
   bool before = false, beyond = false;
   for (const Vec3f& vertex : polygon.vertices) {
     const double depth = dot(view.forward, Vec3d(vertex) - view.eye);
-    before |= depth < 2.0 * view.near;
-    beyond |= depth > view.near;
+    before |= depth < 2.0 * view.z_near;
+    beyond |= depth > view.z_near;
   }
   return before && beyond;
 }

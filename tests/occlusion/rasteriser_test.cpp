@@ -359,8 +359,8 @@ void checkBody(Body (*make)(const Vec3d&, double), double scale, double far_offs
     const Body body = make(origin, scale);
     View view = viewFrom(origin + normalized(random.point(1.0)) * (random.in(4, 9) * scale), {0, 0, -1});
     setOrientation(view, origin + random.point(0.5) * scale - view.eye, random.point(1.0));
-    view.near = 1e-3 * scale;
-    view.far = 1e3 * scale;
+    view.z_near = 1e-3 * scale;
+    view.z_far = 1e3 * scale;
     view.tan_half_fovy = random.in(0.2, 0.8);
     view.aspect = random.in(0.7, 2.0);
     view.orthographic = seed % 3 == 0;

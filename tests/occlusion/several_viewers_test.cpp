@@ -94,7 +94,7 @@ class RandomCase {
     point(view_.eye);
     text << " forward";
     point(view_.forward);
-    text << " near " << view_.near << ", offsets";
+    text << " near " << view_.z_near << ", offsets";
     point(viewers_.offsets[0]);
     point(viewers_.offsets[1]);
     text << (moved_ ? ", in a space of its own" : "") << ", radius " << viewers_.radius << ", near distance "
@@ -121,7 +121,7 @@ class RandomCase {
     setOrientation(view_, turned_ ? random_.point(1.0) : Vec3d(0, 0, -1), {0, 1, 0});
     view_.tan_half_fovy = random_.below(2) == 0 ? 0.5 : random_.sized(0.2, 2.0);
     view_.aspect = random_.below(2) == 0 ? 1.0 : random_.sized(0.5, 2.0);
-    view_.near = random_.sized(0.01, 0.4);
+    view_.z_near = random_.sized(0.01, 0.4);
     if (random_.below(4) == 0) {
       view_.shift_x = random_.in(-1.5, 1.5);
       view_.shift_y = random_.in(-1.5, 1.5);
@@ -464,7 +464,7 @@ void judge(std::uint64_t seed, std::uint32_t pixels, std::uint32_t viewers, View
                            (2.0 * (x + within()) / buffer.width - 1.0 + view.shift_x);
     const Vec3d direction = view.forward + view.right * slope_x + view.up * slope_y;
     // Behind the stored depth, and behind the near plane, by more than rounding.
-    const double nearest = std::max(1.0 / static_cast<double>(buffer.at(x, y)), view.near);
+    const double nearest = std::max(1.0 / static_cast<double>(buffer.at(x, y)), view.z_near);
     for (std::uint32_t k = 0; k < viewers; ++k) {
       const Vec3d point = view.eye + direction * (nearest * (1.0 + random.sized(1e-6, 1e3))),
                   viewer = viewerOf(random, view, made.viewers());

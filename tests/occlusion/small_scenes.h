@@ -17,8 +17,8 @@ inline View viewFrom(const Vec3d& eye, const Vec3d& forward) {
   View view;
   view.eye = eye;
   setOrientation(view, forward, {0, 1, 0});
-  view.near = 0.01;
-  view.far = 1e4;
+  view.z_near = 0.01;
+  view.z_far = 1e4;
   view.tan_half_fovy = 1.0;
   view.aspect = 1.0;
   return view;
@@ -133,8 +133,8 @@ struct RandomScene {
       // The eye on a vertex's coordinates: planes through it, edges through the eye's pixel.
       view.eye = Vec3d(polygons[0].vertices[0]) + Vec3d(0, 0, 1) * family.scale;
     }
-    view.near = 0.01 * family.scale;
-    view.far = 1e3 * family.scale;
+    view.z_near = 0.01 * family.scale;
+    view.z_far = 1e3 * family.scale;
     view.orthographic = seed % 3 == 0;
     view.ortho_height = 12.0 * family.scale;
     scale = family.scale;

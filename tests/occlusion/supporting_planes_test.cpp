@@ -135,7 +135,7 @@ TEST(SupportingPlanes, HiddenIsExactForASingleOccluder) {
         any_clear |= answer.clear;
       }
       View view = viewFrom(Vec3d(toVec(eye)), {0, 0, -1});
-      view.near = 1e-6;
+      view.z_near = 1e-6;
       // The near plane must not matter here.
       double depth = 1.0;
       for (const WholePoint& p : triangle) {
@@ -278,7 +278,7 @@ TEST(SupportingPlanes, SingleSidedWallsHideNothingFromBehind) {
 
 TEST(SupportingPlanes, WhatTheNearPlaneClipsHidesNothing) {
   View view = kLookingBack;
-  view.near = 5.5;
+  view.z_near = 5.5;
   EXPECT_NE(askPlanes(view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
   // A wall that crosses the near plane hides with the part beyond it only.
   const OraclePolygon side{{{-1, -4, 0}, {3, -4, -8}, {3, 4, -8}, {-1, 4, 0}}, true};

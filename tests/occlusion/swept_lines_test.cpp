@@ -77,7 +77,7 @@ SweptCase randomCase(std::uint64_t seed) {
   constexpr std::uint32_t kSizes[][2] = {{320, 180}, {16, 9}, {1, 1}, {1024, 64}};
   const std::uint32_t(&size)[2] = kSizes[random.below(4)];
   made.pixels = PixelView(made.view, size[0], size[1], randomRegion(random, made.view));
-  made.clip_depth = made.view.near * (1.0 + 1e-6);
+  made.clip_depth = made.view.z_near * (1.0 + 1e-6);
   made.lines.reserve(kLines);
   for (std::size_t i = 0; i < kLines; ++i) {
     const Vec3d from = randomPoint(random, made.view, made.clip_depth);
@@ -375,7 +375,7 @@ TEST(SweptLines, AreTightAroundWhatIsSeenFarAway) {
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = 1.0;
   view.aspect = 1.0;
-  view.near = 0.1;
+  view.z_near = 0.1;
   constexpr std::uint32_t kSize = 200;
   // The viewer may be up to a metre to the right: what is 10 metres away is swept by 10 pixels to the left.
   const PixelView pixels(view, kSize, kSize, {.offsets = {Vec3d(1, 0, 0), Vec3d()}});

@@ -89,7 +89,7 @@ TEST_F(BoxVisibility, ABoxAroundTheEyeIsVisibleBehindAnyWall) {
   EXPECT_EQ(ofBox(object).verdict, Verdict::kVisible);
   View view = frontView();
   for (const double near : {0.0, 0.25, 0.499}) {
-    view.near = near;
+    view.z_near = near;
     EXPECT_EQ(ofBox(object, view).verdict, Verdict::kVisible) << near;
   }
   view.orthographic = true;
@@ -101,7 +101,7 @@ TEST_F(BoxVisibility, ABoxAroundTheEyeIsVisibleBehindAnyWall) {
 TEST_F(BoxVisibility, ABoxOnTheNearPlaneIsVisibleOnlyWithinThePicture) {
   addWall(scene_, opaque_, -2, -9, 9, -9, 9);
   View view = frontView();
-  view.near = 1.0;
+  view.z_near = 1.0;
   const ObjectId inside = addDiagonal({0.5f, -1, -9}, {0.75f, 1, 0.5f}),
                  beside = addDiagonal({2.5f, -1, -9}, {2.75f, 1, 0.5f});
   EXPECT_EQ(ofBox(inside, view).verdict, Verdict::kVisible);

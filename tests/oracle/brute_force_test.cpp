@@ -56,7 +56,7 @@ Crossing cross(const ViewRay& ray, const Vec3d& a, const Vec3d& b, const Vec3d& 
 // Objects that a ray shows, or nothing if rounding could change the result.
 std::optional<std::set<std::uint32_t>> seenAlong(const Scene& scene, const View& view, const ViewRay& ray) {
   constexpr double kClear = 1e-4;
-  const double length = view.far - view.near;
+  const double length = view.z_far - view.z_near;
   std::map<double, std::pair<std::uint32_t, bool>> hits;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     const Material& material = scene.materials[scene.objects[o].material.value];
@@ -94,8 +94,8 @@ View randomView(std::mt19937& random) {
   view.orthographic = random() % 3 == 0;
   view.tan_half_fovy = share(random);
   view.ortho_height = 20.0 * share(random);
-  view.near = share(random);
-  view.far = 20.0 * share(random) + 2.0;
+  view.z_near = share(random);
+  view.z_far = 20.0 * share(random) + 2.0;
   if (random() % 2 == 0) {
     view.shift_x = unit(random);
     view.shift_y = unit(random);

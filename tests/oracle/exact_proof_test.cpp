@@ -41,7 +41,7 @@ std::string described(const Scene& scene, const View& view) {
   text.precision(17);
   text << (view.orthographic ? "orthographic " : "perspective ") << "eye " << view.eye.x << ' ' << view.eye.y
        << ' ' << view.eye.z << " forward " << view.forward.x << ' ' << view.forward.y << ' ' << view.forward.z
-       << " near " << view.near << " far " << view.far << " tan " << view.tan_half_fovy << " height "
+       << " near " << view.z_near << " far " << view.z_far << " tan " << view.tan_half_fovy << " height "
        << view.ortho_height << " aspect " << view.aspect << " shift " << view.shift_x << ' ' << view.shift_y;
   for (const Object& object : scene.objects) {
     const Material& material = scene.view().materialOf(object);
@@ -89,8 +89,8 @@ class Maker {
   View view() {
     View view = frontView();
     view.orthographic = family_.orthographic;
-    view.near = oneOf(family_.near);
-    view.far = oneOf(family_.far);
+    view.z_near = oneOf(family_.z_near);
+    view.z_far = oneOf(family_.z_far);
     view.tan_half_fovy = oneOf(family_.tangents);
     view.ortho_height = 2.0 * oneOf(family_.tangents);
     view.aspect = oneOf(family_.aspects);
@@ -250,7 +250,7 @@ void compare(const Scene& scene, const View& view, Maker& maker, Counts& counts,
 // the near plane, for views along -z.
 ObjectId addBoxInView(Scene& scene, const View& view, ObjectId object) {
   const Box box = scene.objects[object.value].bounds;
-  const auto near = static_cast<float>(view.eye.z - view.near);
+  const auto near = static_cast<float>(view.eye.z - view.z_near);
   std::vector<Vec3f> corners;
   const auto addRectangle = [&](int axis, float at) {
     const int i = (axis + 1) % 3;
@@ -280,10 +280,10 @@ bool trianglesShow(const Box& box, const View& view) {
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3d p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
                   (corner & 4) != 0 ? box.max.z : box.min.z);
-    beyond_near = beyond_near && dot(p - view.eye, view.forward) > view.near * (1.0 + 1e-9);
+    beyond_near = beyond_near && dot(p - view.eye, view.forward) > view.z_near * (1.0 + 1e-9);
   }
   const bool has_round_axes = maxComponent(abs(view.forward)) == 1.0;
-  return beyond_near || (has_round_axes && (view.orthographic || view.near > 0.0 || !has_eye));
+  return beyond_near || (has_round_axes && (view.orthographic || view.z_near > 0.0 || !has_eye));
 }
 
 // Expects of the bounding box of each object what brute force says of a box that is made of triangles.

@@ -103,7 +103,7 @@ TEST(ExactVisibility, WhatTheNearPlaneClipsAwayIsNotSeenAndHidesNothing) {
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, true);
   addWall(f.scene, opaque, -5, -8, 8, -8, 8);
   addWall(f.scene, opaque, -10, -1, 1, -1, 1);
-  f.view.near = 5.5;
+  f.view.z_near = 5.5;
   EXPECT_EQ(f.seen(), Ids({kSecond}));
   EXPECT_EQ(f.reached(), Ids({kSecond}));
 }
@@ -114,7 +114,7 @@ TEST(ExactVisibility, TheFarPlaneIsAPlaneNotASphere) {
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
   addWall(f.scene, opaque, -10, 9, 9.9f, 9, 9.9f);
   addWall(f.scene, opaque, -10.2f, -1, 1, -1, 1);
-  f.view.far = 10.1;
+  f.view.z_far = 10.1;
   EXPECT_EQ(f.seen(), Ids({kFirst}));
   EXPECT_EQ(f.reached(), Ids({kFirst}));
 }

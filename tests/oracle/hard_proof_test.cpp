@@ -76,15 +76,15 @@ TEST(HardProof, AScaleByAPowerOfTwoChangesNoVerdict) {
       const Scene scene = wallsAndTriangles(random);
       View view = frontView();
       view.orthographic = orthographic;
-      view.near = 0.5;
+      view.z_near = 0.5;
       const std::vector<Verdict> expected = bruteForce(scene, view);
       for (const int exponent : {-100, -13, 0, 20, 100}) {
         Scene scaled = scene;
         const double factor = std::ldexp(1.0, exponent);
         scale(scaled, static_cast<float>(factor));
         View view_scaled = view;
-        view_scaled.near *= factor;
-        view_scaled.far *= factor;
+        view_scaled.z_near *= factor;
+        view_scaled.z_far *= factor;
         view_scaled.ortho_height *= factor;
         EXPECT_EQ(verdicts(scaled, view_scaled), expected) << "seed " << seed << " scale 2^" << exponent;
       }
@@ -101,8 +101,8 @@ TEST(HardProof, SaysWhatBruteForceSaysOfRoundedCoordinates) {
       scale(scene, factor);
       View view = frontView();
       view.orthographic = seed % 3 == 0;
-      view.near = 0.5 * static_cast<double>(factor);
-      view.far = 100.0 * static_cast<double>(factor);
+      view.z_near = 0.5 * static_cast<double>(factor);
+      view.z_far = 100.0 * static_cast<double>(factor);
       view.ortho_height = 8.0 * static_cast<double>(factor);
       view.eye = Vec3d(scene.positions[seed % scene.positions.size()]) * (seed % 2 == 0 ? 0.0 : 1.0 / 3.0);
       EXPECT_EQ(verdicts(scene, view), bruteForce(scene, view)) << "seed " << seed << " scale " << factor;
@@ -132,8 +132,8 @@ TEST(HardProof, ASlitOfOneUlpShowsAndNoSlitHides) {
   for (const float scale_of_all : {1.0f, 1e-4f, 1e-30f, 1e6f, 1e30f}) {
     for (const float at : {1.0f / 3.0f, -0.7f, 0.1f, 1e-7f}) {
       View view = frontView();
-      view.near = 0.1 * static_cast<double>(scale_of_all);
-      view.far = 100.0 * static_cast<double>(scale_of_all);
+      view.z_near = 0.1 * static_cast<double>(scale_of_all);
+      view.z_far = 100.0 * static_cast<double>(scale_of_all);
       for (const int gap : {-1, 0, 1, 2, 5}) {
         const Scene scene = slit(at * scale_of_all, gap, scale_of_all);
         const Verdict verdict = verdicts(scene, view)[0];
@@ -219,16 +219,16 @@ TEST(HardProof, WhatTouchesTheBorderOfTheViewIsSeen) {
       EXPECT_EQ(seenBeside(std::nextafter(4.0f, 3.0f), -4, -4, forward), Verdict::kVisible);
       EXPECT_EQ(seenBeside(-6.0f, -4, -4, forward), Verdict::kVisible);
       EXPECT_EQ(seenBeside(std::nextafter(-6.0f, -7.0f), -4, -4, forward), Verdict::kHidden);
-      view.far = 4.0;
+      view.z_far = 4.0;
       EXPECT_EQ(seenBeside(0.0f, -4, -4, forward), Verdict::kVisible) << "in the far plane";
       EXPECT_EQ(seenBeside(0.0f, -4, -5, forward), Verdict::kVisible) << "a corner in the far plane";
       EXPECT_EQ(seenBeside(0.0f, std::nextafter(-4.0f, -5.0f), -5, forward), Verdict::kHidden);
-      view.far = 100.0;
-      view.near = 4.0;
+      view.z_far = 100.0;
+      view.z_near = 4.0;
       EXPECT_EQ(seenBeside(0.0f, -4, -4, forward), Verdict::kVisible) << "in the near plane";
       EXPECT_EQ(seenBeside(0.0f, -4, -3, forward), Verdict::kVisible) << "a corner in the near plane";
       EXPECT_EQ(seenBeside(0.0f, std::nextafter(-4.0f, -3.0f), -3, forward), Verdict::kHidden);
-      view.near = 0.1;
+      view.z_near = 0.1;
     }
   }
 }

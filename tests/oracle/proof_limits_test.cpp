@@ -31,7 +31,7 @@ TEST(ProofLimits, AHugeWallIsSeenWhoseCornersHaveNearlyNoDepth) {
     Scene scene;
     addWall(scene, addMaterial(scene, Opacity::kOpaque, true), z, -size, size, -size, size);
     View view = frontView();
-    view.near = 1e-4;
+    view.z_near = 1e-4;
     EXPECT_EQ(verdictOf(scene, view, 0), Verdict::kVisible) << size;
   }
 }
@@ -111,7 +111,7 @@ TEST(ProofLimits, SkewedAxesOfAnOrthographicViewAreTakenInOneWay) {
   View view = frontView();
   view.orthographic = true;
   view.ortho_height = 2;
-  view.far = 3000;
+  view.z_far = 3000;
   view.aspect = 1;
   view.right = {1, 0, 9e-7};
   ASSERT_TRUE(validate(view));

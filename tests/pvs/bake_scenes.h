@@ -123,8 +123,8 @@ class BakeJudge {
     setOrientation(view, {part(), part(), part()}, {0, 1, 0});
     view.tan_half_fovy = 1.0;
     view.aspect = 1.0;
-    view.near = near / std::sqrt(3.0);
-    view.far = 1e4;
+    view.z_near = near / std::sqrt(3.0);
+    view.z_far = 1e4;
     const std::vector<bool> members = membersOf(baked_, setAt(baked_.octree.view(), leaf, eye));
     std::vector<ObjectId> missing;
     for (std::size_t i = 0; i < members.size(); ++i) {

@@ -58,7 +58,7 @@ TEST(WorldSets, OfARealBakeSurviveEdits) {
       setOrientation(view,
                      {static_cast<double>(random() % 5) - 2.0, 0, static_cast<double>(random() % 5) - 2.25},
                      {0, 1, 0});
-      view.near = 0.0625;
+      view.z_near = 0.0625;
       culler.cull(world, view);
       plain.cull(world, view);
       left_out += plain.visible().size() - culler.visible().size();

@@ -169,8 +169,8 @@ TEST_F(DepthPeelingTest, WhatLiesOnTheNearPlaneIsPeeledOnce) {
   maker.wall(6.5, 2.0, kGlass);
   View view = testView();
   view.orthographic = true;  // depths are exact, the nearest one 1
-  view.near = 2.0;
-  view.far = 4.0;
+  view.z_near = 2.0;
+  view.z_far = 4.0;
   LayerRenderer layers = layersOf(maker.scene);
   LayerImage image;
   const LayerDrawStats stats = layers.draw(view, allOf(maker.scene), {.peel = true, .depths = true}, image);

@@ -26,7 +26,7 @@ Case randomCase(std::mt19937& random) {
   c.view.eye = {between(-3, 3), between(-3, 3), between(-3, 3)};
   setOrientation(c.view, {between(-1, 1), between(-1, 1), between(-1, 1)}, {0.0, 1.0, 0.1});
   c.view.orthographic = between(0, 1) < 0.3;
-  c.view.near = between(0.01, 1.0);
+  c.view.z_near = between(0.01, 1.0);
   c.view.aspect = 2.0;
   if (between(0, 1) < 0.5) {
     c.lens = {between(-0.5, 0.5), between(-0.5, 0.5), between(1, 10)};
@@ -56,7 +56,7 @@ Drawn project(const Case& c, const Vec3d& point) {
   const double y = (dot(p, c.view.up) - c.lens.up * (1.0 - z / c.lens.focus)) / over;
   const double half = c.view.orthographic ? 0.5 * c.view.ortho_height : c.view.tan_half_fovy;
   const double u = x / (half * c.view.aspect), v = y / half;
-  const bool inside = std::abs(u) <= 1.0 && std::abs(v) <= 1.0 && z >= c.view.near && z <= c.view.far;
+  const bool inside = std::abs(u) <= 1.0 && std::abs(v) <= 1.0 && z >= c.view.z_near && z <= c.view.z_far;
   return {(u + 1.0) * 0.5 * kRectWidth, (v + 1.0) * 0.5 * kRectHeight, inside};
 }
 

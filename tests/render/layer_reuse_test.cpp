@@ -303,9 +303,9 @@ TEST_F(LayerReuseTest, OtherKindsOfViewsAreDrawnAnew) {
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
   view.tan_half_fovy = 0.6;  // the same kind
   EXPECT_FALSE(reused.drawFrame(view, {}, ids({0})));
-  view.near = 0.2;
+  view.z_near = 0.2;
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
-  view.far = 500.0;
+  view.z_far = 500.0;
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
   view.orthographic = true;
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
@@ -491,7 +491,7 @@ TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {
       }
     }
     Reused reused(maker.scene, {});
-    for (double View::*member : {&View::tan_half_fovy, &View::aspect, &View::near, &View::far}) {
+    for (double View::*member : {&View::tan_half_fovy, &View::aspect, &View::z_near, &View::z_far}) {
       View view = testView();
       view.*member = bad;
       reused.begin(view);

@@ -125,7 +125,7 @@ inline Fragments fragmentsOf(const Scene& scene, const View& view, const Ray& ra
         continue;
       }
       const bool shown = hit->front || material.double_sided;
-      if (!shown || hit->margin < -0.02 || hit->depth < view.near || hit->depth > view.far) {
+      if (!shown || hit->margin < -0.02 || hit->depth < view.z_near || hit->depth > view.z_far) {
         continue;
       }
       found.sure = found.sure && hit->margin > 0.02;

@@ -181,9 +181,9 @@ TEST_F(RendererTest, WhatTheNearAndFarPlanesCutAwayIsNotDrawn) {
   maker.wall(0.0, 3.0, kGreen);
   Renderer renderer = rendererOf(maker.scene);
   View view = testView();
-  view.near = 9.0;
+  view.z_near = 9.0;
   EXPECT_TRUE(isGreen(middleOf(renderer.draw(view, allOf(maker.scene)))));
-  view.far = 9.5;
+  view.z_far = 9.5;
   const Pixel sky = middleOf(renderer.draw(view, allOf(maker.scene)));
   EXPECT_FALSE(isGreen(sky) || isRed(sky));
 }

@@ -40,8 +40,8 @@ View randomView(std::mt19937& random) {
   view.aspect = 0.5 + 0.25 * static_cast<double>(random() % 8);
   view.shift_x = 0.25 * static_cast<double>(random() % 17) - 2.0;
   view.shift_y = 0.25 * static_cast<double>(random() % 17) - 2.0;
-  view.near = 0.5;
-  view.far = 80.0;
+  view.z_near = 0.5;
+  view.z_far = 80.0;
   return view;
 }
 
@@ -120,8 +120,8 @@ TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = 0.5;
   view.aspect = 2.0;
-  view.near = 1.0;
-  view.far = 9.0;
+  view.z_near = 1.0;
+  view.z_far = 9.0;
   // At 2 metres distance, the view is 4 metres wide and 2 metres high.
   Clip clip = project(clipFromScene(view), {12, 21, 28});
   EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-12);
@@ -175,9 +175,9 @@ TEST(Camera, NearDistanceReachesTheCornersOfTheNearPlane) {
       for (const double y : {-1.0, 1.0}) {
         // Converts the corner (x, y) of the near plane back from clip space.
         const Vec3d corner =
-            view.forward * view.near +
-            view.right * (view.near * view.tan_half_fovy * view.aspect * (x + view.shift_x)) +
-            view.up * (view.near * view.tan_half_fovy * (y + view.shift_y));
+            view.forward * view.z_near +
+            view.right * (view.z_near * view.tan_half_fovy * view.aspect * (x + view.shift_x)) +
+            view.up * (view.z_near * view.tan_half_fovy * (y + view.shift_y));
         const Clip clip = project(clipFromScene(view), view.eye + corner);
         EXPECT_NEAR(clip.x / clip.w, x, 1e-9) << "seed " << seed;
         EXPECT_NEAR(clip.y / clip.w, y, 1e-9) << "seed " << seed;
@@ -201,8 +201,8 @@ TEST(CameraPath, ViewsAreInSceneSpace) {
   path.fovy_deg = 90.0;
   path.width = 300;
   path.height = 200;
-  path.near = 0.25;
-  path.far = 70.0;
+  path.z_near = 0.25;
+  path.z_far = 70.0;
   path.shift_x = 0.25;
   path.shift_y = -3.0;
   path.frames = {{{5e6 + 1.5, 0, 0}, {0, 0, -4}, {0, 2, 0}}, {{5e6, 3, 0}, {1, 0, 0}, {0, 1, 0}}};
@@ -212,8 +212,8 @@ TEST(CameraPath, ViewsAreInSceneSpace) {
   EXPECT_FALSE(view.orthographic);
   EXPECT_NEAR(view.tan_half_fovy, 1.0, 1e-12);
   EXPECT_EQ(view.aspect, 1.5);
-  EXPECT_EQ(view.near, 0.25);
-  EXPECT_EQ(view.far, 70.0);
+  EXPECT_EQ(view.z_near, 0.25);
+  EXPECT_EQ(view.z_far, 70.0);
   EXPECT_EQ(view.shift_x, 0.25);
   EXPECT_EQ(view.shift_y, -3.0);
   EXPECT_EQ(path.view(1, {5e6, 0, 0}).eye, Vec3d(0, 3, 0));

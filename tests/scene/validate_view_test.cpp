@@ -81,8 +81,8 @@ TEST(ValidateView, AcceptsANearDistanceOfZeroAndAnInfiniteFarOne) {
   for (const bool orthographic : {false, true}) {
     View view = viewAlong({0, 0, -1});
     view.orthographic = orthographic;
-    view.near = 0.0;
-    view.far = kInfinite;
+    view.z_near = 0.0;
+    view.z_far = kInfinite;
     EXPECT_TRUE(validate(view));
   }
 }
@@ -144,13 +144,13 @@ TEST(ValidateView, NamesTheMemberThatMakesNoView) {
   }
   for (const double bad : {-1e-9, -1.0, kNan, kInfinite}) {
     View view = good;
-    view.near = bad;
-    expectError(view, "View::near");
+    view.z_near = bad;
+    expectError(view, "View::z_near");
   }
-  for (const double bad : {good.near, 0.0, -1.0, kNan}) {
+  for (const double bad : {good.z_near, 0.0, -1.0, kNan}) {
     View view = good;
-    view.far = bad;
-    expectError(view, "View::far");
+    view.z_far = bad;
+    expectError(view, "View::z_far");
   }
 }
 
@@ -164,7 +164,7 @@ TEST(FrustumOfAnOddView, HoldsEverythingWhereThereIsNoView) {
 
 TEST(FrustumOfAnOddView, WithAnInfiniteFarDistanceHasNoEnd) {
   View view = viewAlong({0, 0, -1});
-  view.far = kInfinite;
+  view.z_far = kInfinite;
   std::uint8_t mask = kAllFrustumPlanes;
   EXPECT_EQ(classify(frustumOf(view), Box{{-1, -1, -1e30f}, {1, 1, -0.9e30f}}, mask), FrustumSide::kInside);
   mask = kAllFrustumPlanes;
@@ -174,8 +174,8 @@ TEST(FrustumOfAnOddView, WithAnInfiniteFarDistanceHasNoEnd) {
 TEST(FrustumOfAnOddView, MeasuresNearAndFarInMetresWhateverTheLengthOfForward) {
   View view = viewAlong({0, 0, -1});
   view.eye = {};
-  view.near = 1.0;
-  view.far = 10.0;
+  view.z_near = 1.0;
+  view.z_far = 10.0;
   view.forward = view.forward * 0.01;
   const Frustum frustum = frustumOf(view);
   std::uint8_t mask = kAllFrustumPlanes;
@@ -203,9 +203,9 @@ TEST(ClipFromScene, WithAnInfiniteFarDistanceIsTheLimit) {
   for (const bool orthographic : {false, true}) {
     View view = viewAlong({1, 0.5, -2});
     view.orthographic = orthographic;
-    view.far = 1e15;
+    view.z_far = 1e15;
     const Mat4 far_away = clipFromScene(view);
-    view.far = kInfinite;
+    view.z_far = kInfinite;
     const Mat4 infinite = clipFromScene(view);
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 4; ++column) {

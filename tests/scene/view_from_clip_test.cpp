@@ -112,11 +112,11 @@ void expectWindow(const View& view, const Window& w, double far) {
   EXPECT_NEAR(view.aspect, (w.right - w.left) / (w.top - w.bottom), 1e-12);
   EXPECT_NEAR(view.shift_x, (w.right + w.left) / (w.right - w.left), 1e-12);
   EXPECT_NEAR(view.shift_y, (w.top + w.bottom) / (w.top - w.bottom), 1e-12);
-  EXPECT_NEAR(view.near, w.near, 1e-12 * w.near);
+  EXPECT_NEAR(view.z_near, w.near, 1e-12 * w.near);
   if (std::isinf(far)) {
-    EXPECT_EQ(view.far, far);
+    EXPECT_EQ(view.z_far, far);
   } else {
-    EXPECT_NEAR(view.far, far, 1e-11 * far);
+    EXPECT_NEAR(view.z_far, far, 1e-11 * far);
   }
 }
 
@@ -187,7 +187,7 @@ TEST(ViewFromClip, MeasuresInTheUnitsOfTheScene) {
   // The view matrix turns metres of the scene into centimetres; the projection is in centimetres.
   Window centimetres = kWindow;
   for (double* length : {&centimetres.left, &centimetres.right, &centimetres.bottom, &centimetres.top,
-                         &centimetres.near, &centimetres.far}) {
+                         &centimetres.z_near, &centimetres.z_far}) {
     *length *= 100.0;
   }
   expectView(viewFromClip(glFrustum(centimetres) * scaling(100, 100, 100) * lookAt(someCamera())),
@@ -218,8 +218,8 @@ TEST(ViewFromClip, PutsTheEyeOfAnOrthographicViewOnItsNearPlane) {
   EXPECT_TRUE(view->orthographic);
   EXPECT_NEAR(view->ortho_height, 3.0, 1e-12);
   EXPECT_NEAR(view->aspect, 8.0 / 3.0, 1e-12);
-  EXPECT_EQ(view->near, 0.0);
-  EXPECT_NEAR(view->far, 90.0, 1e-10);
+  EXPECT_EQ(view->z_near, 0.0);
+  EXPECT_NEAR(view->z_far, 90.0, 1e-10);
   EXPECT_EQ(view->shift_x, 0.0);
   EXPECT_EQ(view->shift_y, 0.0);
   const Vec3d eye = camera.eye + camera.right * 1.0 - camera.up * 0.5 - camera.forward * 10.0;
@@ -242,7 +242,7 @@ TEST(ViewFromClip, ReadsTheDepthOfAnOrthographicViewInAnyRange) {
     ASSERT_TRUE(view);
     EXPECT_NEAR(length(view->eye - expected->eye), 0.0, 1e-10);
     EXPECT_NEAR(length(view->forward - expected->forward), 0.0, 1e-12);
-    EXPECT_NEAR(view->far, expected->far, 1e-10);
+    EXPECT_NEAR(view->z_far, expected->z_far, 1e-10);
   }
 }
 
@@ -258,8 +258,8 @@ View randomView(Random& random, bool orthographic) {
   view.aspect = random.in(0.3, 3.0);
   view.shift_x = random.in(-3.0, 3.0);
   view.shift_y = chance(random) ? random.in(-3.0, 3.0) : 0.0;
-  view.near = random.in(0.01, 1.0);
-  view.far = chance(random) && !orthographic ? kEndless : view.near + random.in(1.0, 1000.0);
+  view.z_near = random.in(0.01, 1.0);
+  view.z_far = chance(random) && !orthographic ? kEndless : view.z_near + random.in(1.0, 1000.0);
   return view;
 }
 
@@ -278,11 +278,11 @@ TEST(ViewFromClip, IsTheInverseOfClipFromScene) {
     EXPECT_NEAR(found->aspect, view.aspect, 1e-12) << "seed " << seed;
     EXPECT_NEAR(found->shift_x, view.shift_x, 1e-12) << "seed " << seed;
     EXPECT_NEAR(found->shift_y, view.shift_y, 1e-12) << "seed " << seed;
-    EXPECT_NEAR(found->near, view.near, slack) << "seed " << seed;
-    if (std::isinf(view.far)) {
-      EXPECT_GT(found->far, 1e12 * view.near) << "seed " << seed;
+    EXPECT_NEAR(found->z_near, view.z_near, slack) << "seed " << seed;
+    if (std::isinf(view.z_far)) {
+      EXPECT_GT(found->z_far, 1e12 * view.z_near) << "seed " << seed;
     } else {
-      EXPECT_NEAR(found->far, view.far, 1e-10 * (1.0 + length(view.eye)) * view.far / view.near)
+      EXPECT_NEAR(found->z_far, view.z_far, 1e-10 * (1.0 + length(view.eye)) * view.z_far / view.z_near)
           << "seed " << seed;
     }
   }
@@ -332,7 +332,7 @@ TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
     const Frustum frustum = frustumOf(*found);
     for (int i = 0; i < 200; ++i) {
       // A point beside one of the planes.
-      const double along = view.near * std::exp(random.in(-1.0, 8.0));
+      const double along = view.z_near * std::exp(random.in(-1.0, 8.0));
       Vec3d point = found->eye + found->forward * along + random.point(along);
       const std::size_t plane = static_cast<std::size_t>(random.in(0.0, 6.0));
       const double reach = length(point - found->eye) + length(found->eye);
@@ -340,10 +340,10 @@ TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
                           (frustum.planes[plane].evaluate(point) -
                            random.in(-1.0, 1.0) * std::exp2(random.in(-42.0, 0.0)) * reach);
       const double distance = frustum.planes[plane].evaluate(point);
-      const double allowed =
-          1e-12 * (length(point - found->eye) + length(found->eye)) +
-          (plane == 5 && !orthographic ? 1e-15 * (found->far + length(found->eye)) / found->near * found->far
-                                       : 0.0);
+      const double allowed = 1e-12 * (length(point - found->eye) + length(found->eye)) +
+                             (plane == 5 && !orthographic
+                                  ? 1e-15 * (found->z_far + length(found->eye)) / found->z_near * found->z_far
+                                  : 0.0);
       if (std::abs(distance) > allowed && std::isfinite(allowed)) {
         ++compared;
         EXPECT_EQ(margins(clip, depth, point)[plane] > 0.0L, distance > 0.0)
@@ -364,8 +364,8 @@ TEST(ViewFromClip, ShowsAllThatAMatrixOfSinglePrecisionShowsBeforeItsFarPlane) {
     setOrientation(view, random.point(1.0), {0, 1, 0});
     view.tan_half_fovy = 0.7;
     view.aspect = 16.0 / 9.0;
-    view.near = 0.1;
-    view.far = 0.1 * std::pow(10.0, 3 + static_cast<int>(seed % 4));
+    view.z_near = 0.1;
+    view.z_far = 0.1 * std::pow(10.0, 3 + static_cast<int>(seed % 4));
     const ClipDepth depth = seed % 2 == 0 ? ClipDepth::kMinusOneToOne : ClipDepth::kZeroToOne;
     const Mat4 clip = inSinglePrecision(withDepth(clipFromScene(view), depth));
     const Result<View> found = viewFromClip(clip, {.depth = depth});
@@ -373,13 +373,13 @@ TEST(ViewFromClip, ShowsAllThatAMatrixOfSinglePrecisionShowsBeforeItsFarPlane) {
     const double up = found->tan_half_fovy, right = up * found->aspect;
     for (int i = 0; i < 40; ++i) {
       const double x = random.in(-0.999, 0.999), y = random.in(-0.999, 0.999);
-      const double distance = view.far * random.in(0.8, 1.2);
+      const double distance = view.z_far * random.in(0.8, 1.2);
       const Vec3d point =
           found->eye + (found->forward + found->right * (x * right) + found->up * (y * up)) * distance;
       const auto margin = margins(clip, depth, point);
       if (margin[5] > 0.0L) {
         ++shown;
-        EXPECT_LE(dot(point - found->eye, found->forward), found->far * (1.0 + 1e-6)) << "seed " << seed;
+        EXPECT_LE(dot(point - found->eye, found->forward), found->z_far * (1.0 + 1e-6)) << "seed " << seed;
       }
     }
   }
@@ -399,7 +399,7 @@ TEST(ViewFromClip, RoundingInRowWMakesNoPerspective) {
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.orthographic = true;
   view.ortho_height = 100.0;
-  view.far = 100.0;
+  view.z_far = 100.0;
   for (const double noise : {1e-17, -1e-17, -3e-18, 1e-15}) {
     Mat4 clip = clipFromScene(view);
     clip(3, 2) = noise;
@@ -407,7 +407,7 @@ TEST(ViewFromClip, RoundingInRowWMakesNoPerspective) {
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_TRUE(found->orthographic) << noise;
     EXPECT_NEAR(found->ortho_height, 100.0, 1e-9);
-    EXPECT_NEAR(found->far, view.far - view.near, 1e-9);
+    EXPECT_NEAR(found->z_far, view.z_far - view.z_near, 1e-9);
   }
 }
 
@@ -517,7 +517,7 @@ TEST(ViewFromClip, AnObliqueNearPlaneIsThePlaneThatItWasMadeOf) {
     EXPECT_LT(length(oblique->view.eye - view.eye), 1e-9);
     EXPECT_LT(length(oblique->view.forward - view.forward), 1e-12);
     EXPECT_NEAR(oblique->view.shift_x, view.shift_x, 1e-12);
-    EXPECT_EQ(oblique->view.far, kEndless);
+    EXPECT_EQ(oblique->view.z_far, kEndless);
     // No point of the picture is drawn that is nearer, and one of its corners hardly farther.
     double nearest = kEndless;
     for (int corner = 0; corner < 4; ++corner) {
@@ -527,8 +527,8 @@ TEST(ViewFromClip, AnObliqueNearPlaneIsThePlaneThatItWasMadeOf) {
       const double along = dot(normal, ray);
       nearest = along > 0.0 ? std::min(nearest, -plane.evaluate(view.eye) / along) : nearest;
     }
-    EXPECT_LE(oblique->view.near, nearest);
-    EXPECT_GE(oblique->view.near, nearest * (1.0 - 1e-6));
+    EXPECT_LE(oblique->view.z_near, nearest);
+    EXPECT_GE(oblique->view.z_near, nearest * (1.0 - 1e-6));
   }
 }
 

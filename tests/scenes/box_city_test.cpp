@@ -102,8 +102,8 @@ TEST(BoxCity, WalksAreThoseThatAreDocumented) {
   EXPECT_EQ(scene.paths[1].frames.size(), 20u);
   const Box city = sceneBounds(scene.view());
   for (const CameraPath& path : scene.paths) {
-    EXPECT_EQ(path.near, 0.1);
-    EXPECT_GT(path.far, length(Vec3d(city.extent())));
+    EXPECT_EQ(path.z_near, 0.1);
+    EXPECT_GT(path.z_far, length(Vec3d(city.extent())));
     for (const CameraFrame& frame : path.frames) {
       EXPECT_NEAR(frame.eye.y, 1.7, 1e-9);
     }

@@ -87,8 +87,8 @@ TEST(City, WalksAreThoseThatAreDocumented) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(scene.paths[i].name, names[i]);
     EXPECT_EQ(scene.paths[i].frames.size(), i == 0 ? 400u : 100u);
-    EXPECT_EQ(scene.paths[i].near, 0.1);
-    EXPECT_GT(scene.paths[i].far, 200.0);
+    EXPECT_EQ(scene.paths[i].z_near, 0.1);
+    EXPECT_GT(scene.paths[i].z_far, 200.0);
   }
   EXPECT_NEAR(longestStep(scene.paths[0]), 0.36, 0.02);
   for (const CameraFrame& frame : scene.paths[0].frames) {

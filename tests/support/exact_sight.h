@@ -187,8 +187,8 @@ inline void ExactSight::addTriangle(std::span<const Vec3f, 3> corners, const Mat
     triangle.scale = add(triangle.scale, triangle.edges[i]);
     triangle.depth = add(triangle.depth, times(triangle.edges[i], dot(from_eye[i], forward_)));
   }
-  triangle.beyond_near = beyond(triangle, view_.near);
-  triangle.before_far = std::isfinite(view_.far) ? times(beyond(triangle, view_.far), -1) : Vec{0, 0, 0};
+  triangle.beyond_near = beyond(triangle, view_.z_near);
+  triangle.before_far = std::isfinite(view_.z_far) ? times(beyond(triangle, view_.z_far), -1) : Vec{0, 0, 0};
   triangles_.push_back(triangle);
 }
 

@@ -612,15 +612,15 @@ inline void HostileSceneMaker::addViews(HostileScene& made) {
   view.tan_half_fovy = chance(4) ? in(0.05, 3) : 1.0;
   view.ortho_height = scale_ * in(2, 20);
   view.aspect = chance(2) ? 1.0 : in(0.3, 3);
-  view.near = scale_ * (chance(3) ? in(0.001, 0.1) : 0.1);
-  view.far =
+  view.z_near = scale_ * (chance(3) ? in(0.001, 0.1) : 0.1);
+  view.z_far =
       chance(4) ? std::numeric_limits<double>::infinity() : scale_ * (chance(3) ? in(4, 20) : in(20, 1000));
   const auto depthOf = [&](const Vec3f& p) { return dot(Vec3d(p) - view.eye, view.forward); };
   if (!made.scene.positions.empty() && chance(3)) {
     const double depth = depthOf(made.scene.positions[std::size_t(below(int(made.scene.positions.size())))]);
     if (depth > 1e-3 * scale_ && depth < 8 * scale_) {
-      view.near = depth * (1 + tinyOrNone());
-      view.far = std::max(view.far, 2 * view.near);
+      view.z_near = depth * (1 + tinyOrNone());
+      view.z_far = std::max(view.z_far, 2 * view.z_near);
     }
   }
   made.views.push_back(view);

@@ -179,7 +179,7 @@ class CullingJudge {
     const auto in = [&](double low, double high) {
       return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
     };
-    const double size = 10.0 * view.near * std::exp2(in(-14.0, -1.0)),
+    const double size = 10.0 * view.z_near * std::exp2(in(-14.0, -1.0)),
                  angle = chance(2) ? 0.0 : in(-0.02, 0.02);
     const Vec3d step = (view.right * in(-1, 1) + view.up * in(-1, 1) + view.forward * in(-1, 1)) * size;
     std::vector<View> views;

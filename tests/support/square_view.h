@@ -10,8 +10,8 @@ inline View squareView(double near, double far) {
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = 1.0;
   view.aspect = 1.0;
-  view.near = near;
-  view.far = far;
+  view.z_near = near;
+  view.z_far = far;
   return view;
 }
 

@@ -68,7 +68,7 @@ inline RayAnswer castAtAll(std::span<const OraclePolygon> polygons, const View& 
       view.orthographic ? target - view.forward * dot(view.forward, target - view.eye) : view.eye;
   RayAnswer answer = RayAnswer::kClear;
   for (const OraclePolygon& polygon : polygons) {
-    const RayAnswer one = castAt(polygon, from, target, view.near, view.forward);
+    const RayAnswer one = castAt(polygon, from, target, view.z_near, view.forward);
     if (one == RayAnswer::kBlocked) {
       return one;
     }

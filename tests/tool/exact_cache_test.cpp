@@ -69,8 +69,8 @@ TEST(ExactCache, AnythingThatTheAnswerDependsOnIsPartOfTheKey) {
   moved.eye.z = 1e-300;
   turned.up.y = 1.0;
   wide.aspect = 2.0;
-  far.far = 2000.0;
-  near.near = 0.2;
+  far.z_far = 2000.0;
+  near.z_near = 0.2;
   parallel.orthographic = true;
   beside.shift_x = above.shift_y = 1e-9;
   for (const View& view : {moved, turned, wide, far, near, parallel, beside, above}) {

@@ -76,8 +76,8 @@ View slitView() {
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = 0.577;
   view.aspect = 640.0 / 480.0;
-  view.near = 0.1;
-  view.far = 100.0;
+  view.z_near = 0.1;
+  view.z_far = 100.0;
   return view;
 }
 

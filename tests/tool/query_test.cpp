@@ -263,7 +263,7 @@ TEST(Query, HoldsAllThatRaysSee) {
     EXPECT_TRUE(std::is_sorted(visible.begin(), visible.end()));
     fewest = std::min(fewest, visible.size());
     view.aspect = view.tan_half_fovy = 1.0;
-    view.near = 0.11;  // its corners are at 0.19
+    view.z_near = 0.11;  // its corners are at 0.19
     for (const Vec3d forward : {Vec3d(1, 0, 0), Vec3d(-1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, 0, -1),
                                 Vec3d(0, 1, 0), Vec3d(0, -1, 0)}) {
       setOrientation(view, forward, {0.3, 1.0, 0.2});

@@ -72,7 +72,7 @@ TEST_F(VerifyRegions, ContradictsSetsFromWhichVisibleObjectsAreRemoved) {
     view.eye = vec(witness["eye"]) - scene->origin;
     setOrientation(view, point - view.eye, {0, 1, 0});
     view.tan_half_fovy = 1e-4;
-    view.near = 0.999 * baked.record.near_distance;
+    view.z_near = 0.999 * baked.record.near_distance;
     const ObjectId object(witness["object"].get<std::uint32_t>());
     EXPECT_TRUE(oracle.confirm(view, {object, point})) << witness;
   }

@@ -20,8 +20,8 @@ View lightFrom(const Vec3d& eye, const Vec3d& forward, bool sun) {
   light.ortho_height = 60.0;
   light.aspect = 1.0;
   light.tan_half_fovy = 1.5;
-  light.near = 0.5;
-  light.far = 200.0;
+  light.z_near = 0.5;
+  light.z_far = 200.0;
   return light;
 }
 
@@ -33,7 +33,7 @@ struct LightRay {
 std::optional<LightRay> rayTo(const View& light, const Vec3d& point) {
   const Vec3d at = point - light.eye;
   const double x = dot(light.right, at), y = dot(light.up, at), depth = dot(light.forward, at);
-  if (depth <= light.near || depth >= light.far) {
+  if (depth <= light.z_near || depth >= light.z_far) {
     return std::nullopt;
   }
   const double half = light.orthographic ? 0.5 * light.ortho_height : light.tan_half_fovy * depth;
@@ -41,10 +41,10 @@ std::optional<LightRay> rayTo(const View& light, const Vec3d& point) {
     return std::nullopt;
   }
   if (light.orthographic) {
-    return LightRay{point - light.forward * depth, light.forward, light.near, depth};
+    return LightRay{point - light.forward * depth, light.forward, light.z_near, depth};
   }
   const double far = length(at);
-  return LightRay{light.eye, at / far, light.near * far / depth, far};
+  return LightRay{light.eye, at / far, light.z_near * far / depth, far};
 }
 
 struct Shadows {
@@ -63,7 +63,7 @@ Shadows shadowsMissing(const Story& story, const View& view, const View& light,
     const Vec3d along = normalized(view.forward + view.right * (x * view.tan_half_fovy * view.aspect) +
                                    view.up * (y * view.tan_half_fovy));
     const double slant = dot(along, view.forward);
-    const auto seen = Rays::first(rays.hits(view.eye, along, view.near / slant, view.far / slant));
+    const auto seen = Rays::first(rays.hits(view.eye, along, view.z_near / slant, view.z_far / slant));
     const auto ray = seen ? rayTo(light, view.eye + along * seen->distance) : std::nullopt;
     if (!ray) {
       continue;
@@ -94,7 +94,7 @@ TEST(ShadowCasters, EveryShadowThatIsSeenHasItsCaster) {
     ShadowCasters casters({.mask_pixels = seed % 3 == 0 ? 32u : 128u});
     for (int frame = 0; frame < 12; ++frame) {
       View view = random.next();
-      view.far = frame % 4 == 0 ? std::numeric_limits<double>::infinity() : 30.0;
+      view.z_far = frame % 4 == 0 ? std::numeric_limits<double>::infinity() : 30.0;
       const View light = lightFrom(sun ? Vec3d(30, 40, 10) : Vec3d(2, 14, 3),
                                    sun ? Vec3d(-3, -4, -1) : Vec3d(0.1, -1, 0.2), sun);
       culler.cull(random.story.world, view);

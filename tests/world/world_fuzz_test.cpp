@@ -61,7 +61,7 @@ TEST(WorldFuzz, LinesOfSightHideNothingThatIsSeen) {
     HardStory story(seed, seed % 2 == 0 ? Vec3d() : Vec3d(20000, 0, -8000));
     story.world.setOrigin(story.base);
     // Nearer things are in the picture and hide nothing for the line of sight.
-    WorldSight sight({.near = 0.25, .groups = 2});
+    WorldSight sight({.near_distance = 0.25, .groups = 2});
     for (std::uint32_t frame = 0; frame < 40; ++frame) {
       const View view = story.next();
       const Story drawn = story.drawn(2);

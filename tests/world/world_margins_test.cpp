@@ -107,7 +107,7 @@ TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
     story.world.use(std::move(join));
     View view = viewFrom({0.009, 0, 0}, {0, 0, -1});
     view.tan_half_fovy = 6e-3;
-    view.near = 9.9;
+    view.z_near = 9.9;
     WorldCuller culler({.raster = {.width = 128, .height = 72}});
     for (int frame = 0; frame < 3; ++frame) {
       culler.cull(story.world, view);

@@ -145,7 +145,7 @@ TEST(WorldMoves, ManyAtOnceAreAsManyOneByOne) {
 bool isWithin(const View& view, const Vec3d& point) {
   const Vec3d at = point - view.eye;
   const double depth = dot(at, view.forward), height = 0.999 * depth * view.tan_half_fovy;
-  return depth > 1.001 * view.near && depth < 0.999 * view.far && std::abs(dot(at, view.up)) < height &&
+  return depth > 1.001 * view.z_near && depth < 0.999 * view.z_far && std::abs(dot(at, view.up)) < height &&
          std::abs(dot(at, view.right)) < height * view.aspect;
 }
 

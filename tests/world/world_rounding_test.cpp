@@ -75,8 +75,8 @@ View lookingAlong(const Vec3d& eye, double tan_half_fovy, double near, double fa
   view.eye = eye;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = tan_half_fovy;
-  view.near = near;
-  view.far = far;
+  view.z_near = near;
+  view.z_far = far;
   return view;
 }
 

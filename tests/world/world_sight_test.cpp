@@ -19,7 +19,7 @@ Verdict exactly(const Story& story, const Vec3d& from, InstanceId target, double
   Scene scene = story.scene(ids);
   const auto object = static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), target) - ids.begin());
   View view = viewFrom(from, center(scene.objects[object].bounds) - from);
-  view.near = near;
+  view.z_near = near;
   view.tan_half_fovy = 4.0;
   view.aspect = 1.0;
   const ExactVisibility exact(scene.view());
@@ -32,7 +32,7 @@ TEST(WorldSight, HiddenBoxesAreHiddenAndVisibleOnesHaveNothingBefore) {
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     RandomStory random(seed, 60);
     const Story& story = random.story;
-    WorldSight sight({.near = 0.0625});
+    WorldSight sight({.near_distance = 0.0625});
     for (int frame = 0; frame < 30; ++frame) {
       const View view = random.next();
       const Rays rays(story);

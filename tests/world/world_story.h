@@ -222,8 +222,8 @@ inline View viewFrom(const Vec3d& eye, const Vec3d& forward) {
   View view;
   view.eye = eye;
   setOrientation(view, forward, {0, 1, 0});
-  view.near = 0.0625;
-  view.far = 500.0;
+  view.z_near = 0.0625;
+  view.z_far = 500.0;
   return view;
 }
 

@@ -53,7 +53,7 @@ TEST(WorldViews, WhatIsInNoGroupOfTheViewNeitherShowsNorHides) {
       }
     }
     View broken = viewFrom({0, 0, 0}, {0, 0, -1});
-    broken.far = -1.0;
+    broken.z_far = -1.0;
     first.cull(story.world, broken);
     for (const InstanceId id : first.visible()) {
       EXPECT_NE(groups.at(id.value) & 1, 0u);
@@ -72,8 +72,8 @@ TEST(WorldViews, WhatIsBehindTheClipPlaneNeitherShowsNorHides) {
     for (int frame = 0; frame < 24; ++frame) {
       const View view = random.next();
       View clipped = view;
-      clipped.near = 6.0;
-      const Plane plane{view.forward, -dot(view.forward, view.eye) - clipped.near};
+      clipped.z_near = 6.0;
+      const Plane plane{view.forward, -dot(view.forward, view.eye) - clipped.z_near};
       culler.setClipPlane(plane);
       culler.cull(random.story.world, view);
       culler.cull(random.story.world, view);

@@ -27,25 +27,25 @@ struct View {
   // / (right - left), and shift_y is (top + bottom) / (top - bottom).
   double shift_x = 0.0, shift_y = 0.0;
   static constexpr double kMaxShift = 1000.0;
-  double near = 0.1;    // metres along forward, >= 0
-  double far = 1000.0;  // metres along forward, > near; may be infinite
+  double z_near = 0.1;    // metres along forward, >= 0
+  double z_far = 1000.0;  // metres along forward, > z_near; may be infinite
 };
 
 // Returns the view as the library uses it: axes of other lengths are normalised, and a left-handed basis is
 // mirrored (right becomes -right, shift_x becomes -shift_x), which does not change what is visible. The error
 // names the invalid member and what it must be: a value is not finite, an axis is zero, axes are not
 // perpendicular (beyond single-precision rounding), the angle of view, height or aspect is not positive, a
-// shift is too large, near is negative, or far is not beyond near. All functions that take a view validate it
-// themselves and treat everything as visible if it is invalid; call this to learn the reason.
+// shift is too large, z_near is negative, or z_far is not beyond z_near. All functions that take a view
+// validate it themselves and treat everything as visible if it is invalid; call this to learn the reason.
 Result<View> validate(const View& view);
 
 // Sets right and up from any forward and up hint, even if they are parallel.
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint);
 
 // OpenGL's clip space, from the view's own space: x, y, z in [-w, w], z = -w on the near plane. Of a view in
-// world space this is clip_from_world. The view must be one that validate() accepts. If far is infinite,
+// world space this is clip_from_world. The view must be one that validate() accepts. If z_far is infinite,
 // points at infinity have z = w. A depth buffer then cannot distinguish depths in an orthographic view; nor
-// can it in any view with near = 0.
+// can it in any view with z_near = 0.
 Mat4 clipFromScene(const View& view);
 
 // The six frustum planes of the view, in its own space. For a view that validate() rejects: planes that
@@ -70,7 +70,7 @@ struct CameraPath {
   double ortho_height = 0.0;                 // metres; > 0 makes the camera orthographic
   std::uint32_t width = 1280, height = 720;  // pixels
   double shift_x = 0.0, shift_y = 0.0;       // of each view, see View
-  double near = 0.1, far = 2000.0;           // metres
+  double z_near = 0.1, z_far = 2000.0;       // metres
   std::vector<CameraFrame> frames{};
 
   // The view of one frame, in the scene space of a scene with this origin; with {}, in world space, as a

@@ -33,18 +33,18 @@ struct ClipSpace {
 //
 // The matrix is taken as exact; so are matrices of single precision. The sides of the frustum are those of
 // the matrix to within 1e-12 of the distance from the eye and of the eye's coordinates. The far plane is
-// where the depth range of the matrix ends. Rounding in the matrix tilts it, by the more the larger far /
-// near is; far is the depth of its farthest corner, known to a fraction of 1e-15 (far + |eye|) / near of
-// itself, and infinite where a corner lies at infinity or beyond. That the near plane is tilted, by less than
-// 1e-6, is left out of account. In an orthographic view the matrix does not tell where the eye is: it is put
-// on the middle of the near plane, so that near and both shifts are 0. Otherwise the result is the inverse of
-// clipFromScene().
+// where the depth range of the matrix ends. Rounding in the matrix tilts it, by the more the larger z_far /
+// z_near is; z_far is the depth of its farthest corner, known to a fraction of 1e-15 (z_far + |eye|) / z_near
+// of itself, and infinite where a corner lies at infinity or beyond. That the near plane is tilted, by less
+// than 1e-6, is left out of account. In an orthographic view the matrix does not tell where the eye is: it is
+// put on the middle of the near plane, so that z_near and both shifts are 0. Otherwise the result is the
+// inverse of clipFromScene().
 //
 // Give the right ClipSpace::depth: only planes in the wrong order are noticed. With a wrong one the view has
 // another near plane. A matrix of OpenGL that is read as kZeroToOne has it about twice as far away, and
 // objects before it are culled although they are visible; a matrix of Direct3D that is read as
 // kMinusOneToOne has it nearer, and what the program's near plane clips hides what is behind it. So compare
-// view->near with the program's own distance once. A wrong y_down only turns the view upside down.
+// view->z_near with the program's own distance once. A wrong y_down only turns the view upside down.
 //
 // The error says what is wrong: the matrix is not finite or not a projection, the near plane is tilted
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at
@@ -53,13 +53,13 @@ Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_spa
 
 // A perspective view whose near plane is tilted, as those of mirrors and portals are.
 struct ObliqueView {
-  View view{};         // near: of the nearest point that is drawn; far: infinite
+  View view{};         // z_near: of the nearest point that is drawn; z_far: infinite
   Plane near_plane{};  // unit normal, towards what is drawn; in the space of the view
 };
 
 // The same for such a matrix (E. Lengyel. Oblique View Frustum Depth Projection and Clipping. Journal of Game
 // Development 1, 2005). Its far plane, which follows from the near plane and is of no use, is left out. Where
-// the eye is on the drawn side of the near plane, view.near is 0, and hardly anything can hide.
+// the eye is on the drawn side of the near plane, view.z_near is 0, and hardly anything can hide.
 //
 //   culler.setClipPlane(oblique->near_plane);  // a WorldCuller
 //   culler.cull(world, oblique->view);

@@ -79,8 +79,8 @@ class CameraAdder {
       return failure("{}: znear {} and zfar {} are not 0 < znear < zfar", where_, camera.znear, camera.zfar);
     }
     path.fovy_deg = camera.yfov * 180.0 / std::numbers::pi;
-    path.near = camera.znear;
-    path.far = camera.zfar;
+    path.z_near = camera.znear;
+    path.z_far = camera.zfar;
     return setSize(camera.aspect_ratio == 0.0 ? 16.0 / 9.0 : camera.aspect_ratio, path);
   }
 
@@ -94,8 +94,8 @@ class CameraAdder {
     path.ortho_height = 2.0 * camera.ymag;
     // Ours needs near > 0: the eye steps back, which changes nothing of an orthographic picture.
     step_back_ = camera.znear > 0.0 ? 0.0 : 0.1;
-    path.near = camera.znear + step_back_;
-    path.far = camera.zfar + step_back_;
+    path.z_near = camera.znear + step_back_;
+    path.z_far = camera.zfar + step_back_;
     return setSize(camera.xmag / camera.ymag, path);
   }
 

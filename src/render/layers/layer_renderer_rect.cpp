@@ -45,7 +45,7 @@ RectCollector::RectCollector(const View& view, const LensPoint& lens, std::uint3
     : clip_from_relative_(reversedClipFromRelative(view, lens)),
       eye_(view.eye + lensOffset(view, lens)),
       forward_(view.forward),
-      near_(view.near),
+      near_(view.z_near),
       width_(width),
       height_(height) {}
 

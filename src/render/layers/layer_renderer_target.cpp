@@ -63,12 +63,12 @@ void place(const std::vector<T>& pixels, const PixelRect& rect, std::size_t widt
 // stored as n (f - z) / (z (f - n)), in orthographic views as (f - z) / (f - n). 0 means that nothing was
 // drawn.
 void toMetres(const View& view, std::vector<float>& depths) {
-  const double range = view.far - view.near;
+  const double range = view.z_far - view.z_near;
   for (float& depth : depths) {
     const double d = depth;
     depth = d == 0.0            ? LayerImage::kNoDepth
-            : view.orthographic ? static_cast<float>(view.far - d * range)
-                                : static_cast<float>(view.far * view.near / (d * range + view.near));
+            : view.orthographic ? static_cast<float>(view.z_far - d * range)
+                                : static_cast<float>(view.z_far * view.z_near / (d * range + view.z_near));
   }
 }
 

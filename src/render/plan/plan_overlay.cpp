@@ -99,9 +99,9 @@ std::vector<Point> convexHull(std::vector<Point> points) {
 // The outline of the view's volume seen from above, cut off at twice the picture's radius.
 std::vector<Point> frustumOutline(const OverlayBuilder& builder, const PlanView& plan) {
   const View& view = plan.camera;
-  const double far = std::min(view.far, 4.0 * plan.radius);
+  const double far = std::min(view.z_far, 4.0 * plan.radius);
   std::vector<Point> corners;
-  for (const double depth : {view.near, far}) {
+  for (const double depth : {view.z_near, far}) {
     const double half = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
     for (const double x : {view.shift_x - 1.0, view.shift_x + 1.0}) {
       for (const double y : {view.shift_y - 1.0, view.shift_y + 1.0}) {

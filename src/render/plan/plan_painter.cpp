@@ -26,8 +26,8 @@ View viewFromAbove(const Box& bounds, const PlanView& plan) {
   view.orthographic = true;
   view.ortho_height = 2.0 * plan.radius;
   view.aspect = 1.0;
-  view.near = 1.0;
-  view.far = std::max(top - bottom, 1.0) + 2.0;
+  view.z_near = 1.0;
+  view.z_far = std::max(top - bottom, 1.0) + 2.0;
   return view;
 }
 

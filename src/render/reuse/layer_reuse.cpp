@@ -23,7 +23,7 @@ bool isFinite(const View& view) {
 }
 
 bool areOfOneKind(const View& a, const View& b) {
-  return a.orthographic == b.orthographic && a.near == b.near && a.far == b.far;
+  return a.orthographic == b.orthographic && a.z_near == b.z_near && a.z_far == b.z_far;
 }
 
 bool areEqual(const View& a, const View& b) {

@@ -98,7 +98,7 @@ std::optional<PicturePoint> PictureView::find(const Vec3d& point_scene) const {
       0.5 * height_ * (1.0 + view_.shift_y) - scale_y_ * dot(relative, view_.up) / divisor};
   // Corners that were clipped at these planes lie a little before or behind them.
   constexpr double kSlack = 1e-9;
-  const bool is_between = depth >= view_.near * (1.0 - kSlack) && depth <= view_.far * (1.0 + kSlack);
+  const bool is_between = depth >= view_.z_near * (1.0 - kSlack) && depth <= view_.z_far * (1.0 + kSlack);
   if (!is_between || !std::isfinite(at.x) || !std::isfinite(at.y)) {
     return std::nullopt;
   }

@@ -47,9 +47,9 @@ int main() {
   const SplitAxis split{.count = 2};
   const CylinderOptions cylinder{.sectors = 6};
   const HexagonOptions hexagons{.width = 2.0};
-  const View view{.near = 1.0};
+  const View view{.z_near = 1.0};
   const CameraFrame frame{.forward = {0, 0, -1}};
-  const CameraPath path{.near = 1.0};
+  const CameraPath path{.z_near = 1.0};
   const Object object{.index_count = 3};
   const Material material{.double_sided = true};
   const SceneView scene{.indices = {}};
@@ -64,7 +64,7 @@ int main() {
                  query.cache_bytes == 1024 && layers.arcs == LayerArcs::kAll && part.is_static &&
                  axis.kind == ExtentAxis::Kind::kAngular && plane.plane.offset > 0.0 &&
                  joint.sphere_radius > 1.0 && split.count == 2 && cylinder.sectors == 6 &&
-                 hexagons.width > 1.0 && view.near > 0.5 && frame.forward.z < 0.0 && path.near > 0.5 &&
+                 hexagons.width > 1.0 && view.z_near > 0.5 && frame.forward.z < 0.0 && path.z_near > 0.5 &&
                  object.index_count == 3 && material.double_sided && scene.objects.empty() &&
                  face.offset > 0.0
              ? 0

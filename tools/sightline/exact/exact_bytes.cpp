@@ -56,7 +56,7 @@ std::vector<std::byte> viewBytes(const View& view) {
     }
   }
   writer.add(static_cast<std::uint8_t>(view.orthographic ? 1 : 0));
-  for (const double number : {view.tan_half_fovy, view.ortho_height, view.aspect, view.near, view.far}) {
+  for (const double number : {view.tan_half_fovy, view.ortho_height, view.aspect, view.z_near, view.z_far}) {
     writer.add(number);
   }
   // Symmetric views keep the bytes, and so the answers, that they had before there were others.

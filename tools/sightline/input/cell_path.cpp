@@ -94,10 +94,10 @@ Vec3d viewpoint(std::uint32_t leaf, const CellBox& cell, Random& random) {
 
 double nearOf(const CameraPath& path, double near_distance) {
   View view = path.view(0, {});
-  view.near = 1.0;
+  view.z_near = 1.0;
   // A little less, because of the rounding of nearDistance.
   const double near = near_distance / nearDistance(view) * (1.0 - 1e-9);
-  return near > 0.0 ? near : path.near;
+  return near > 0.0 ? near : path.z_near;
 }
 
 }  // namespace
@@ -132,12 +132,12 @@ CellPath cellPath(const SightFile& baked, const Scene& scene) {
     }
   }
   if (!result.path.frames.empty()) {
-    result.path.near = nearOf(result.path, baked.record().near_distance);
+    result.path.z_near = nearOf(result.path, baked.record().near_distance);
   }
   const Box bounds = sceneBounds(scene.view());
   const double reach = length(Vec3d(bounds.max) - Vec3d(bounds.min)) + length(octree.max - octree.min) +
                        length(center(bounds) - (octree.min + octree.max) * 0.5);
-  result.path.far = std::isfinite(reach) ? std::max(result.path.far, reach) : result.path.far;
+  result.path.z_far = std::isfinite(reach) ? std::max(result.path.z_far, reach) : result.path.z_far;
   return result;
 }
 

@@ -34,7 +34,7 @@ class NearestSurfaces {
       : width_(static_cast<int>(image.width)),
         height_(static_cast<int>(image.height)),
         orthographic_(view.orthographic),
-        far_(view.far),
+        far_(view.z_far),
         reciprocal_depth_(std::move(image.depths)) {
     for (float& value : reciprocal_depth_) {
       value = static_cast<float>(reciprocalDepthOf(value));
@@ -115,7 +115,7 @@ bool clip(const View& view, CameraPoint& a, CameraPoint& b) {
   // Distances from the planes of the view volume, positive inside.
   const auto distances = [&](const CameraPoint& p) {
     const double w = view.orthographic ? 1.0 : p.depth;
-    return std::array{p.depth - view.near, view.far - p.depth, w - p.x, w + p.x, w - p.y, w + p.y};
+    return std::array{p.depth - view.z_near, view.z_far - p.depth, w - p.x, w + p.x, w - p.y, w + p.y};
   };
   const std::array at_a = distances(a), at_b = distances(b);
   double from = 0.0, to = 1.0;

@@ -39,7 +39,7 @@ View lookingNorth(double tan_half_fovy, double aspect) {
   setOrientation(view, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0});
   view.tan_half_fovy = tan_half_fovy;
   view.aspect = aspect;
-  view.near = 0.01;
+  view.z_near = 0.01;
   return view;
 }
 

@@ -52,7 +52,7 @@ void addBirdsEyeView(const Scene& scene, CameraPath path, Renderer& renderer, Pi
   const double size = std::max(extent.x, extent.z);
   const Vec3d towards{0.0, -0.6 * size, -0.75 * size};  // from the eye to the middle
   path.frames = {{middle - towards, towards, {0.0, 1.0, 0.0}}};
-  path.far = 10.0 * size;
+  path.z_far = 10.0 * size;
   std::vector<ObjectId> everything;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     everything.push_back(ObjectId(o));
