@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -26,16 +25,13 @@
 #include <vector>
 
 #include "bench/benchmark_scene.h"
+#include "src/base/stopwatch.h"
 #include "src/occluders/conform/conform.h"
 #include "src/occluders/surfaces/surface_mesh.h"
 
 namespace {
 
 using namespace sightline;
-
-double secondsNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Triangles {
   std::vector<Vec3f> positions;
@@ -144,9 +140,9 @@ ParallelFor onThreads(std::uint32_t threads) {
 template <typename Weld>
 void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
              const occluders::ConformSettings& settings) {
-  double start = secondsNow();
+  base::Stopwatch watch;
   const occluders::SurfaceMesh mesh = weld();
-  const double welding = secondsNow() - start;
+  const double welding_s = 1e-6 * watch.lap();
   std::vector<Vec3d> vertices;
   for (const Vec3f& v : mesh.vertices) {
     vertices.emplace_back(v);
@@ -155,14 +151,14 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
   for (const std::array<std::uint32_t, 3>& corners : mesh.triangles) {
     triangles.insert(triangles.end(), corners.begin(), corners.end());
   }
-  start = secondsNow();
+  watch.lap();
   const occluders::ConformedMesh conformed =
       occluders::conform({vertices, triangles}, settings, onThreads(threads));
-  const double conforming = secondsNow() - start;
+  const double conforming_s = 1e-6 * watch.lap();
   const Boundary before = boundaryOf(vertices, triangles),
                  after = boundaryOf(conformed.vertices, conformed.triangles);
   fmt::print("{:<24} {:>9} {:>9} {:>8} {:>7.2f} {:>7.2f} {:>9} {:>9} {:>9.0f} {:>9.0f} {:>9.1e}\n", name,
-             triangles.size() / 3, conformed.source.size(), conformed.divided, welding, conforming,
+             triangles.size() / 3, conformed.source.size(), conformed.divided, welding_s, conforming_s,
              before.edges, after.edges, before.metres, after.metres, conformed.slack);
 }
 

@@ -5,16 +5,17 @@
 #include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 #include <vector>
+
+#include "src/base/stopwatch.h"
 
 namespace sightline::bench {
 
 double microseconds(const auto& function) {
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   function();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  return watch.lap();
 }
 
 // Processor time of this thread so far.

@@ -20,13 +20,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 #include <vector>
 
 #include "bench/benchmark_scene.h"
 #include "bench/measuring.h"
 #include "sightline/occluders/occluder_database.h"
+#include "src/base/stopwatch.h"
 #include "tests/support/any_culler.h"
 
 namespace {
@@ -126,9 +126,9 @@ void printMemory(std::uint32_t copies, std::size_t frames) {
   const Hierarchy kd_tree = buildHierarchy(city.bounds, city.cost, {.kind = HierarchyKind::kKdTree});
   const Hierarchy bvh = buildHierarchy(city.bounds, city.cost);
   const OccluderSet occluders = findOccluders(city.scene.view());
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   const OccluderDatabase database = OccluderDatabase::build(kd_tree, occluders);
-  const std::chrono::duration<double> build_s = std::chrono::steady_clock::now() - start;
+  const double build_s = 1e-6 * watch.lap();
 
   AnyCuller culler(bvh, city.bounds, occluders, {.method = AnyMethod::kKeptPlanes});
   std::uint64_t relation_bytes = 0, relations = 0;
@@ -141,7 +141,7 @@ void printMemory(std::uint32_t copies, std::size_t frames) {
   fmt::print("{:>7}{:>9}{:>10}{:>10} |{:>11}{:>9.2f} |{:>9}{:>9.2f}{:>9.1f}\n", copies, city.bounds.size(),
              city.scene.view().indices.size() / 3, occluders.occluders.size(), relations,
              static_cast<double>(relation_bytes) / kMiB, database.cellCount(),
-             static_cast<double>(database.bytes()) / kMiB, build_s.count());
+             static_cast<double>(database.bytes()) / kMiB, build_s);
   std::fflush(stdout);
 }
 

@@ -73,15 +73,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "bench/measuring.h"
 
 namespace sightline::tangent_bench {
 namespace {
@@ -204,30 +204,18 @@ std::size_t buildPlanes(Find find, const Query& box, const Occluder& occluder,
   return count;
 }
 
-double seconds(const auto& function) {
-  const auto start = std::chrono::steady_clock::now();
-  function();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double>& values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 // Times `method` and the tables in turns and compares their medians, so that what else the machine does meets
 // both.
 void compare(benchmark::State& state, const auto& run, Find method) {
-  std::vector<double> method_s, tables_s;
+  std::vector<double> method_us, tables_us;
   for ([[maybe_unused]] auto _ : state) {
-    method_s.push_back(seconds([&] { run(method); }));
-    tables_s.push_back(seconds([&] { run(geometry::tangentsByTables); }));
-    state.SetIterationTime(method_s.back());
+    method_us.push_back(bench::microseconds([&] { run(method); }));
+    tables_us.push_back(bench::microseconds([&] { run(geometry::tangentsByTables); }));
+    state.SetIterationTime(1e-6 * method_us.back());
   }
-  state.counters["ns"] = median(method_s) * 1e9 / static_cast<double>(kCount);
-  state.counters["tables_ns"] = median(tables_s) * 1e9 / static_cast<double>(kCount);
-  state.counters["per_tables"] = median(method_s) / median(tables_s);
+  state.counters["ns"] = bench::medianOf(method_us) * 1e3 / static_cast<double>(kCount);
+  state.counters["tables_ns"] = bench::medianOf(tables_us) * 1e3 / static_cast<double>(kCount);
+  state.counters["per_tables"] = bench::medianOf(method_us) / bench::medianOf(tables_us);
 }
 
 void vertices(benchmark::State& state, Find method, Lines lines) {

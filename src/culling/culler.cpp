@@ -1,10 +1,10 @@
 #include "sightline/culling/culler.h"
 
 #include <array>
-#include <chrono>
 #include <optional>
 #include <utility>
 
+#include "src/base/stopwatch.h"
 #include "src/culling/last_view.h"
 #include "src/culling/occluder_choice.h"
 #include "src/culling/scene_fit.h"
@@ -18,18 +18,6 @@ namespace {
 
 using culling::SceneSizes;
 using culling::SetFilter;
-
-// Measures the time, in microseconds, since its construction or the last lap().
-class Laps {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double, std::micro>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // Replaces null pointers by an empty hierarchy and an empty set of occluders.
 CullingScene withoutNulls(CullingScene scene) {
@@ -111,11 +99,11 @@ struct Culler::Impl {
 
   // Finds the set of the eye's cell. Returns true if it differs from that of the last frame.
   bool lookUp(const View& view) {
-    Laps laps;
+    base::Stopwatch watch;
     const bool another = filter->find(view);
     stats.set_nodes = static_cast<std::uint32_t>(filter->nodes().size());
     stats.set_objects = filter->objectCount();
-    stats.look_up_us = laps.lap();
+    stats.look_up_us = watch.lap();
     return another;
   }
 
@@ -147,7 +135,7 @@ struct Culler::Impl {
 
   // Sets `in_view` to the objects of the answer that are in the view.
   void keepInView(const Frustum& frustum) {
-    Laps laps;
+    base::Stopwatch watch;
     in_view.clear();
     for (const ObjectId object : answer) {
       std::uint8_t cut = kAllFrustumPlanes;
@@ -155,14 +143,14 @@ struct Culler::Impl {
         in_view.push_back(object);
       }
     }
-    stats.traverse_us += laps.lap();
+    stats.traverse_us += watch.lap();
   }
 
   void cullObjects(const View& view, const Frustum& frustum, const ViewerRegion& viewers, bool jumped,
                    const OccluderSet* moving, std::span<const MovingSurfaces> moving_surfaces) {
     const bool another_set = filter && lookUp(view);
     const SetFilter* set = filter && !filter->everything() ? &*filter : nullptr;
-    Laps laps;
+    base::Stopwatch watch;
     CullingFrame frame{.view = view,
                        .frustum = frustum,
                        .viewers = viewers,
@@ -180,19 +168,19 @@ struct Culler::Impl {
       if (method->wantsOccluders()) {
         chosen =
             choice->choose({view, frustum, jumped, last_view.step(), answer, set, method->drawsBodies()});
-        stats.choose_us = laps.lap();
+        stats.choose_us = watch.lap();
       }
       frame.occluders = inUse(chosen, moving);
     }
     method->build(frame);
-    stats.build_us = laps.lap();
+    stats.build_us = watch.lap();
     answer.clear();
     frame.last_visible = {};
     method->traverse(frame, stats, answer);
     if (several_boxes) {
       several_boxes->removeHidden(frustum, *method, answer);
     }
-    stats.traverse_us = laps.lap() - stats.detail_us;
+    stats.traverse_us = watch.lap() - stats.detail_us;
   }
 
   // Returns the chosen occluders of the scene, followed by all moving ones. Valid until the next call.
@@ -211,7 +199,7 @@ struct Culler::Impl {
 
   // Returns the time that it took, microseconds.
   double classifyMoving(const Frustum& frustum, std::span<const Box> boxes) {
-    Laps laps;
+    base::Stopwatch watch;
     dynamic_states.assign(boxes.size(), Visibility::kVisible);
     asked.clear();
     asked_boxes.clear();
@@ -231,7 +219,7 @@ struct Culler::Impl {
     for (std::size_t i = 0; i < asked.size(); ++i) {
       dynamic_states[asked[i]] = asked_states[i];
     }
-    return laps.lap();
+    return watch.lap();
   }
 
   CullingScene given;  // as the caller passed it

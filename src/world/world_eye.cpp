@@ -1,20 +1,12 @@
 #include "src/world/world_eye.h"
+#include "src/base/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace sightline::world {
 
 using hierarchy::DynamicTree;
-
-namespace {
-
-double microsecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
 
 int sideOf(const Plane& plane, const Box& box, double offset_rounding) {
   const Vec3d middle = center(box), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
@@ -51,7 +43,7 @@ View WorldEye::begin(const WorldData& data, const View& view_world) {
 
 void WorldEye::cull(const WorldData& data, const View& view_world, std::span<const InstanceId> last,
                     const IdBits& last_set, IdBits& kept, WorldCullStats& stats) {
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   const bool jumped = last_view_.jumpsTo(view_world);
   ++frame_;
   counts_ = {};
@@ -61,8 +53,7 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
     drawFirst(data, view, last, jumped);
   }
   pyramid_.finish();
-  stats.draw_us += microsecondsSince(start);
-  const auto drawn = std::chrono::steady_clock::now();
+  stats.draw_us += watch.lap();
   hidden_.begin(data);
   test(data, false);
   if (settings_.occlusion) {
@@ -70,7 +61,7 @@ void WorldEye::cull(const WorldData& data, const View& view_world, std::span<con
     usual_work_.frame(work_);
     version_ = data.version;
   }
-  stats.test_us += microsecondsSince(drawn);
+  stats.test_us += watch.lap();
   stats.occluders += counts_.occluders;
   stats.edges += counts_.edges;
   stats.nodes_tested += counts_.nodes_tested;

@@ -1,9 +1,9 @@
 #include "sightline/culling/detail_objects.h"
 
-#include <chrono>
 #include <optional>
 #include <utility>
 
+#include "src/base/stopwatch.h"
 #include "src/culling/methods/detail_test.h"
 
 namespace sightline {
@@ -31,10 +31,9 @@ class DetailObjects final : public CullingMethod {
     method_->traverse(frame, stats, visible);
     tested_ = culled_ = 0;
     if (scene_.near_objects != nullptr) {
-      const auto start = std::chrono::steady_clock::now();
+      base::Stopwatch watch;
       test(frame.view, visible);
-      stats.detail_us =
-          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+      stats.detail_us = watch.lap();
     }
   }
 

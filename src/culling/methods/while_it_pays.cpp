@@ -1,12 +1,12 @@
 #include "sightline/culling/while_it_pays.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "src/base/stopwatch.h"
 #include "src/culling/adaptive_coverage.h"
 #include "src/culling/hierarchical_traversal.h"
 #include "src/culling/methods/traversal_options.h"
@@ -128,11 +128,11 @@ class WhileItPays final : public CullingMethod {
 
   // Estimates what the method saves in this frame.
   void compare(const CullingFrame& frame, std::span<const ObjectId> visible) {
-    const auto start = std::chrono::steady_clock::now();
+    base::Stopwatch watch;
     in_frustum_.clear();
     CullStats ignored;
     cullByFrustum(frame, ignored, in_frustum_);
-    frustum_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    frustum_us_ = watch.lap();
     saved_us_ = std::max(costOf(in_frustum_) - costOf(visible), 0.0);
     compared_ = true;
   }

@@ -1,9 +1,9 @@
 #include "sightline/render/renderer.h"
 
 #include <array>
-#include <chrono>
 #include <utility>
 
+#include "src/base/stopwatch.h"
 #include "src/render/context/gl_context.h"
 #include "src/render/context/read_pixels.h"
 #include "src/render/plan/plan_painter.h"
@@ -88,14 +88,12 @@ void Renderer::Impl::drawScene(const View& view) const {
 }
 
 DrawStats Renderer::Impl::timedDraw(const View& view, std::span<const ObjectId> objects) {
-  using Clock = std::chrono::steady_clock;
   glFinish();
-  const Clock::time_point start = Clock::now();
+  base::Stopwatch watch;
   const SceneBuffers::Drawn drawn = buffers.select(objects);
   drawScene(view);
   glFinish();
-  const std::chrono::duration<double, std::micro> elapsed = Clock::now() - start;
-  return {.draw_us = elapsed.count(), .triangles = drawn.triangles, .ranges = drawn.ranges};
+  return {.draw_us = watch.lap(), .triangles = drawn.triangles, .ranges = drawn.ranges};
 }
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sightline/io/file.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/bake/bake_databases.h"
 #include "tools/sightline/bake/bake_options.h"
 #include "tools/sightline/bake/bake_report.h"
@@ -21,7 +22,6 @@
 #include "tools/sightline/command_line/output_files.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_sight.h"
@@ -150,7 +150,7 @@ Result<Bake::TakenOver> takeOver(const SightFile& before, const BakeOptions& opt
 }
 
 Result<Planned> planBake(const BakeOptions& options) {
-  Stopwatch watch;
+  base::Stopwatch watch;
   std::optional<SightFile> before;
   if (!options.update.empty()) {
     Result<SightFile> opened = SightFile::open(options.update);
@@ -282,7 +282,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
     return Error{fmt::format("{}; the finished parts are kept in {}, and --resume goes on from there",
                              error.message, options.partsFile())};
   };
-  Stopwatch watch;
+  base::Stopwatch watch;
   const SightExtras extras = extrasOf(options, planned);
   report.times.databases = watch.lap();
   const SignalGuard guard;
@@ -367,7 +367,7 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   report.update = planned->update;
   report.times.load = planned->load_us;
   report.times.plan = planned->plan_us;
-  Stopwatch watch;
+  base::Stopwatch watch;
   const Result<std::uint64_t> all =
       bakeAsFirst(planned->bake, world, options.common.threads, *checkpoint, parts, report.effort);
   if (!all) {

@@ -10,13 +10,13 @@
 #include <set>
 
 #include "sightline/io/file.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/bench/bench_report.h"
 #include "tools/sightline/bench/bench_text.h"
 #include "tools/sightline/bench/scene_bench.h"
 #include "tools/sightline/command_line/command_line.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/signals.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/exact/exact_cache.h"
 #include "tools/sightline/methods/baseline.h"
@@ -62,7 +62,7 @@ Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
         fmt::format("--prepared {}: a file is of one scene; give one scene", options.method.prepared)};
   }
   for (const std::string& scene : options.scenes) {
-    Stopwatch watch;
+    base::Stopwatch watch;
     Result<SceneAndWalk> input = loadSceneAndWalk(scene, options.path, options.method);
     if (!input) {
       return input.error();

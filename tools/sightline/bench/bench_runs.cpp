@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <span>
 
+#include "src/base/stopwatch.h"
 #include "tools/sightline/bench/machine.h"
-#include "tools/sightline/command_line/stopwatch.h"
 
 #define XXH_INLINE_ALL
 #include "src/pvs/format/checksum.h"
@@ -20,7 +19,7 @@ class HierarchyCosts {
   PartCost of(HierarchyKind kind, CullingData& data) {
     std::optional<PartCost>& cost = costs_[static_cast<std::size_t>(kind)];
     if (!cost) {
-      Stopwatch watch;
+      base::Stopwatch watch;
       const Hierarchy& hierarchy = data.hierarchy(kind);
       cost = PartCost{watch.lap(), hierarchy.nodes.size() * sizeof(HierarchyNode) +
                                        hierarchy.objects.size() * sizeof(ObjectId)};
@@ -53,7 +52,7 @@ class OccluderCosts {
   static void add(std::optional<PartCost>& cost, Make&& make, PartCost& sum) {
     if (!cost) {
       const HeapGrowth growth;
-      Stopwatch watch;
+      base::Stopwatch watch;
       make();
       cost = PartCost{watch.lap(), growth.bytes()};
     }
@@ -102,11 +101,10 @@ void interleave(std::vector<BenchRun>& runs, std::size_t frames, std::size_t rou
 
 void cullMeasured(BenchRun& run, const View& view) {
   const double cpu_start = threadTimeUs();
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   run.culler.cull(view);
-  const auto end = std::chrono::steady_clock::now();
+  run.cull_us.push_back(watch.lap());
   run.cpu_us.push_back(threadTimeUs() - cpu_start);
-  run.cull_us.push_back(std::chrono::duration<double, std::micro>(end - start).count());
 }
 
 // How many of the objects are not in `kept`. Both ascend.
@@ -138,7 +136,7 @@ std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, Cullin
     data.prepare(setting);
     preparation.databases = databaseCost(setting, data);
     const HeapGrowth growth;
-    Stopwatch watch;
+    base::Stopwatch watch;
     Culler culler = data.makeCuller(setting);
     preparation.method = {watch.lap(), growth.bytes()};
     culler.setParallelFor(serialFor);

@@ -5,10 +5,10 @@
 #include <memory>
 #include <utility>
 
+#include "src/base/stopwatch.h"
 #include "tools/sightline/bench/advice.h"
 #include "tools/sightline/bench/machine.h"
 #include "tools/sightline/command_line/progress_bar.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/exact/exact_several_boxes.h"
 
 #define XXH_INLINE_ALL

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <chrono>
-
 #include "sightline/culling/culler.h"
+#include "src/base/stopwatch.h"
 
 namespace sightline::tool {
 
@@ -12,9 +11,9 @@ struct CullRun {
   double cull_us = 0.0;
 
   void cull(const View& view) {
-    const auto start = std::chrono::steady_clock::now();
+    base::Stopwatch watch;
     culler.cull(view);
-    cull_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    cull_us = watch.lap();
   }
 };
 

@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "scenes/procedural.h"
 #include "sightline/io/import.h"
 #include "sightline/occluders/closed_scene.h"
 #include "sightline/pvs/format/scene_id.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/input/camera_path_file.h"
 #include "tools/sightline/input/cell_path.h"
 #include "tools/sightline/input/doors.h"
@@ -225,7 +224,7 @@ void CullingData::countTriangles(const SceneView& scene) {
 template <typename Made, typename Make>
 const Made& CullingData::makeOnce(std::unique_ptr<Made>& made, const std::string& name, Make&& make) const {
   if (!made) {
-    Stopwatch watch;
+    base::Stopwatch watch;
     made = std::make_unique<Made>(make());
     stages_.push_back({name, watch.lap()});
   }
@@ -289,11 +288,11 @@ namespace {
 template <typename Database, typename Build>
 std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what, Build&& build) {
   ProgressBar progress(what);
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   Database database = build([&](double done) { progress.update(done); });
-  const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+  const double time_us = watch.lap();
   return std::make_unique<CullingData::Timed<Database>>(
-      CullingData::Timed<Database>{std::move(database), time.count()});
+      CullingData::Timed<Database>{std::move(database), time_us});
 }
 
 }  // namespace
@@ -307,7 +306,7 @@ std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const s
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     return nullptr;
   }
-  const auto start = std::chrono::steady_clock::now();
+  base::Stopwatch watch;
   const Result<DatabaseBlob> blob = baked_->readDatabase(name);
   std::string unusable;
   if (!blob) {
@@ -318,8 +317,7 @@ std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const s
     const auto count = static_cast<std::uint32_t>(occluders().occluders.size());
     Result<Database> database = Database::load(blob->bytes, count);
     if (database) {
-      const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
-      return std::make_unique<Timed<Database>>(Timed<Database>{std::move(*database), time.count()});
+      return std::make_unique<Timed<Database>>(Timed<Database>{std::move(*database), watch.lap()});
     }
     unusable = database.error().message;
   }

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "sightline/drawing/drawing.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/output_files.h"
-#include "tools/sightline/command_line/stopwatch.h"
 
 namespace sightline::tool {
 namespace {
@@ -50,7 +50,7 @@ class LayerDrawings : public FrameMaker {
     DrawingSettings settings = settings_;
     settings.progress = frame.progress;
     const std::vector<std::string>& names = moving.scene.object_names;
-    Stopwatch watch;
+    base::Stopwatch watch;
     const Drawing drawing = options_.plot
                                 ? renderer_->plot(posed_.view(), names, frame.view, frame.order, settings)
                                 : renderer_->paint(posed_.view(), names, frame.view, frame.order, settings);

@@ -11,12 +11,12 @@
 
 #include "sightline/layers/compositing.h"
 #include "sightline/layers/convex_pieces.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/layers/layer_drawings.h"
 #include "tools/sightline/layers/layer_eyes.h"
@@ -220,7 +220,7 @@ class WalkSorter {
     View view = input_.walk.view(frame, input_.moving.scene);
     view.aspect = aspect_;
     sorter_.place(frame, view);
-    Stopwatch watch;
+    base::Stopwatch watch;
     const LayerOrder& of_hulls = sorter_.sort(view);
     const double sort_us = options_.no_times ? 0.0 : watch.lap();
     if (!makers_.empty() || seen_ != nullptr) {
@@ -266,7 +266,7 @@ class WalkSorter {
   // Sorts the frame again, with parts in cycles divided.
   const LayerOrder& divide(std::uint32_t frame, const View& view, const LayerOrder& whole, Json& json) {
     cycles_->place(frame, view);
-    Stopwatch watch;
+    base::Stopwatch watch;
     const LayerOrder& order = cycles_->sort(view);
     const double split_us = options_.no_times ? 0.0 : watch.lap();
     json["split"] = cycles_->figures(whole, order, split_us);

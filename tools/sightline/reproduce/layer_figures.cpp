@@ -11,8 +11,8 @@
 
 #include "sightline/drawing/drawing.h"
 #include "sightline/render/lens_picture.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/progress_bar.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/reproduce/layer_figure_scene.h"
 
 namespace sightline::tool {
@@ -141,7 +141,7 @@ class LensFigure {
  private:
   Status draw(const std::string& file, const std::string& name, const LensSettings& settings,
               LayerImage& picture) {
-    Stopwatch watch;
+    base::Stopwatch watch;
     const Result<LensStats> stats = lens_.draw(frame_.view, frame_.layers, settings, picture);
     if (!stats) {
       return stats.error();
@@ -311,7 +311,7 @@ LayerFigures hiddenLineFigure(const LayerFigureOptions& options) {
   view.tan_half_fovy *= kNarrower;
   const LayerOrder& order = sorter.update(view);
   HiddenLineRenderer renderer(posed.view());
-  Stopwatch watch;
+  base::Stopwatch watch;
   const Drawing drawing =
       renderer.paint(posed.view(), posed.object_names, view, order, {.page_height = 800.0});
   const double draw_ms = 1e-3 * watch.lap();

@@ -13,11 +13,11 @@
 #include <filesystem>
 
 #include "sightline/pvs/bake/write_sight.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/bake/bake_options.h"
 #include "tools/sightline/bake/bake_run.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/renderer_or_note.h"
@@ -73,7 +73,7 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
 
 void measurePieces(const Bake& bake, const ParallelFor& parallel_for, Effort& effort) {
   ProgressBar bar("baking pieces");
-  Stopwatch watch;
+  base::Stopwatch watch;
   const TimedBake apart =
       bakeTimed(bake, BakedAs::kApart, parallel_for, [&](double done) { bar.update(done); });
   effort.apart_s = 1e-6 * watch.lap();
@@ -91,7 +91,7 @@ enum class Pieces : std::uint8_t { kNotMeasured, kMeasured };
 Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, Pieces pieces,
                         const ParallelFor& parallel_for) {
   Effort effort;
-  Stopwatch watch;
+  base::Stopwatch watch;
   const OccluderSet occluders = findOccluders(scene.view(), {.area_fraction = 1.0}, parallel_for);
   const Result<Bake> bake = Bake::plan(scene.view(), occluders, settings);
   if (!bake) {
@@ -178,7 +178,7 @@ void timeFinds(const SightFile& file, const Scene& scene, Navigation& navigation
     }
   };
   const auto finds = static_cast<double>(views.size());
-  Stopwatch watch;
+  base::Stopwatch watch;
   round();
   navigation.first_find_us = watch.lap() / finds;
   const std::size_t rounds = kMinFinds / views.size() + 1;

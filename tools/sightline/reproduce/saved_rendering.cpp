@@ -19,8 +19,8 @@
 #include "sightline/layers/layer_sorter.h"
 #include "sightline/render/layer_compositor.h"
 #include "sightline/render/layer_reuse.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/progress_bar.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/reproduce/snyder_lengyel.h"
 
 namespace sightline::tool {
@@ -178,7 +178,7 @@ void SceneRun::drawAll(const View& view, LayerImage& picture) {
   plain_.setTransforms(scene_from_stored_);
   CompositeSettings settings{.peel = CompositeSettings::Peel::kNever};
   settings.draw_layer = [&](std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image) {
-    Stopwatch watch;
+    base::Stopwatch watch;
     if (std::any_of(objects.begin(), objects.end(), [&](ObjectId object) { return isInView(object); })) {
       plain_.draw(view, objects, how, image);
     } else {
@@ -194,7 +194,7 @@ void SceneRun::drawReusing(const View& view, Way& way) {
   CompositeSettings settings{.peel = CompositeSettings::Peel::kNever};
   settings.draw_layer = [&](std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image) {
     const std::uint64_t drawn_before = way.reuse->stats().drawn;
-    Stopwatch watch;
+    base::Stopwatch watch;
     way.reuse->image(objects, how, image);
     if (!is_first_) {
       way.totals.images_us += watch.lap();

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "tools/sightline/command_line/stopwatch.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/reproduce/layer_figures.h"
 #include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/saved_rendering.h"
@@ -44,7 +44,7 @@ LayerTotals sortFrames(
   for (std::uint32_t frame = 0; frame < frames; ++frame) {
     const View view = scene.scene.paths.front().view(frame, scene.scene.origin);
     pose(scene, frame, poses, sorter);
-    Stopwatch watch;
+    base::Stopwatch watch;
     const LayerOrder& order = sorter.update(view);
     totals.add(order, 0.0, 0.0, watch.lap());
     if (visit) {

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "sightline/comparison/layer_sorting.h"
+#include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/progress_bar.h"
-#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/reproduce/snyder_lengyel.h"
 
 namespace sightline::tool {
@@ -246,7 +246,7 @@ class SortingExperiments {
     sorter.update(scene.scene.paths.front().view(0, scene.scene.origin));
     double fastest = 1e300;
     for (int i = 0; i < 5; ++i) {
-      Stopwatch watch;
+      base::Stopwatch watch;
       sorter.rebuildSearch();
       fastest = std::min(fastest, watch.lap());
     }

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <span>
 
-#include "tools/sightline/command_line/stopwatch.h"
+#include "src/base/stopwatch.h"
 
 namespace sightline::tool {
 namespace {
@@ -64,7 +64,7 @@ TimedBake bakeTimed(const Bake& bake, BakedAs as, const ParallelFor& parallel_fo
         if (as == BakedAs::kApart) {
           worker = std::make_unique<Bake::Worker>(bake);
         }
-        Stopwatch watch;
+        base::Stopwatch watch;
         BakedPart part = worker->bake(task);
         const double ms = 1e-3 * watch.lap();
         const std::lock_guard lock(mutex);

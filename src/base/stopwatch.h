@@ -3,8 +3,9 @@
 #include <chrono>
 #include <utility>
 
-namespace sightline::tool {
+namespace sightline::base {
 
+// Wall-clock time, from construction on.
 class Stopwatch {
  public:
   // Microseconds since the last call, or since construction.
@@ -18,4 +19,4 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-}  // namespace sightline::tool
+}  // namespace sightline::base
