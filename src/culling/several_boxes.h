@@ -32,6 +32,14 @@ class SeveralBoxes {
     return used_[object.value] != 0 ? boxes_.of(object) : std::span<const Box>();
   }
 
+  // Candidates are the visible objects with several boxes of which the point that was seen last is not seen.
+  void findCandidates(CullingMethod& method, std::span<const ObjectId> visible);
+  // Asks for the next box of each candidate that the frustum does not cull. A candidate that has none left is
+  // hidden.
+  void askForNextBoxes(const Frustum& frustum, std::span<const ObjectId> visible);
+  // Those of which the box is hidden stay candidates.
+  void takeAnswers(std::span<const ObjectId> visible);
+
   const ObjectBoxes& boxes_;
   std::vector<std::uint8_t> used_;  // by object: whether its boxes are
   // By object: the box that was seen last, and a point of it that was seen. They are looked at first, which

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include "sightline/base/large_vector.h"
@@ -240,85 +238,6 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   occluders::DividedOutlines divided;
   occluders::divideOutlines(scene.positions, parallel_for, all.polygons, divided);
   occluders::assembleSet(scene.positions, all.polygons, parallel_for, set);
-  return set;
-}
-
-OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
-  // Equal corners get one vertex id, as in a welded mesh.
-  Scene corners;
-  for (const OccluderPolygon& polygon : polygons) {
-    for (const Vec3f& vertex : polygon.vertices) {
-      corners.indices.push_back(static_cast<std::uint32_t>(corners.positions.size()));
-      corners.positions.push_back(vertex);
-    }
-  }
-  weldPositions(corners);
-
-  OccluderSet set;
-  occluders::IdStore ids;
-  occluders::PolygonFinisher finisher(corners.positions, 64);
-  std::vector<FoundPolygon> all;
-  std::vector<ObjectId> object_of;  // by polygon
-  std::size_t first = 0;
-  double largest_of_all = 0.0;
-  for (const OccluderPolygon& polygon : polygons) {
-    occluders::GrowingPolygon outline;
-    double largest = 0.0;
-    Vec3d normal;
-    for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
-      outline.loop.push_back(corners.indices[first + i]);
-      largest = std::max(largest, static_cast<double>(maxComponent(abs(polygon.vertices[i]))));
-      const Vec3d origin(polygon.vertices[0]);
-      normal += cross(Vec3d(polygon.vertices[i]) - origin,
-                      Vec3d(polygon.vertices[(i + 1) % polygon.vertices.size()]) - origin);
-    }
-    first += polygon.vertices.size();
-    if (outline.loop.size() < 3 || !std::isfinite(largest) || !(length(normal) > 0.0)) {
-      ++set.report.degenerate;
-      continue;
-    }
-    Plane plane;
-    plane.normal = normalized(normal);
-    plane.offset = -dot(plane.normal, Vec3d(polygon.vertices[0]));
-    for (const Vec3f& vertex : polygon.vertices) {
-      outline.slack = std::max(outline.slack, std::abs(plane.evaluate(Vec3d(vertex))));
-    }
-    outline.triangle_count = static_cast<std::uint32_t>(outline.loop.size() - 2);
-    const double tolerance = occluders::roundingTolerance(largest);
-    finisher.setPlane(plane, tolerance);
-    if (outline.slack > tolerance || !finisher.finish(outline)) {
-      ++set.report.degenerate;
-      continue;
-    }
-    largest_of_all = std::max(largest_of_all, largest);
-    all.push_back(occluders::foundPolygon(outline, plane, ids));
-    all.back().double_sided = polygon.double_sided;
-    object_of.push_back(polygon.object);
-    set.report.used += outline.triangle_count;
-  }
-  std::vector<std::uint32_t> by_area(all.size());
-  std::iota(by_area.begin(), by_area.end(), 0u);
-  std::stable_sort(by_area.begin(), by_area.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return all[a].area > all[b].area; });
-  std::vector<RankedPolygon> ranked;
-  std::map<ObjectId, std::vector<FoundPolygon*>> by_object;
-  for (std::size_t id = 0; id < by_area.size(); ++id) {
-    FoundPolygon& polygon = all[by_area[id]];
-    ranked.push_back({&polygon, object_of[by_area[id]], OccluderId(id)});
-    by_object[ranked.back().object].push_back(&polygon);
-  }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const RankedPolygon& a, const RankedPolygon& b) { return a.object < b.object; });
-  occluders::BodyFinder bodies(corners.positions);
-  for (const auto& [object, of_object] : by_object) {
-    if (object.valid()) {
-      set.objects.push_back(object);
-    }
-    bodies.find(of_object, occluders::roundingTolerance(largest_of_all));
-  }
-  occluders::DividedOutlines divided;
-  occluders::divideOutlines(corners.positions, serialFor, ranked, divided);
-  occluders::assembleSet(corners.positions, ranked, serialFor, set);
   return set;
 }
 

@@ -181,6 +181,19 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       side_margin(sideMargin(root)),
       diagonal(diagonalOf(scene, region)),
       viewer_tree_(buildBoxTree(s.viewers, {})) {
+  numberObjects();
+  if (settings.occlusion == BakeOcclusion::kFused) {
+    for (const std::vector<ObjectId>& group : doors.groups) {
+      closed_panels.push_back(panelsOf(scene, doors, group, settings, parallel_for));
+    }
+  }
+  numberOccluders();
+  chooseDepth();
+  countOccluders();
+  gatherLevels(set, parallel_for);
+}
+
+void BakeScene::numberObjects() {
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
   }
@@ -196,11 +209,9 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       leaf_of_[boxes.nodes[n].first_object] = n;
     }
   }
-  if (settings.occlusion == BakeOcclusion::kFused) {
-    for (const std::vector<ObjectId>& group : doors.groups) {
-      closed_panels.push_back(panelsOf(scene, doors, group, settings, parallel_for));
-    }
-  }
+}
+
+void BakeScene::numberOccluders() {
   door_occluders_.resize(doors.all.size());
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
     position_of_occluder.push_back(position_of[occluders[i].object.value]);
@@ -208,8 +219,9 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       door_occluders_[indexOf(occluders[i].object)].push_back(i);
     }
   }
-  chooseDepth();
-  countOccluders();
+}
+
+void BakeScene::gatherLevels(const OccluderSet& set, const ParallelFor& parallel_for) {
   // The trees of the levels and that of the faces, side by side.
   const std::uint32_t levels = settings.max_depth + 1;
   levels_.resize(levels);

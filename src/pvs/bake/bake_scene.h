@@ -124,11 +124,14 @@ struct BakeScene {
     ConeTree cones{};                      // of the same boxes, by number of the occluder
   };
   std::size_t indexOf(ObjectId door) const;  // into doors.all
+  void numberObjects();
+  void numberOccluders();
   void chooseDepth();
   void countOccluders();
   BoxTree reachOfOccluders(std::uint32_t level) const;
   bool ofUse(const ConvexOccluder& occluder, std::uint32_t level) const;
   LevelOccluders occludersFor(std::uint32_t level) const;
+  void gatherLevels(const OccluderSet& set, const ParallelFor& parallel_for);
   void gatherFaces(const OccluderSet& set);
   std::vector<LevelOccluders> levels_;
   static_assert(kMaxOctreeDepth < 32);
