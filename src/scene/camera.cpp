@@ -125,8 +125,8 @@ View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {
   view.aspect = static_cast<double>(width) / static_cast<double>(height);
   view.shift_x = shift_x;
   view.shift_y = shift_y;
-  view.z_near = near;
-  view.z_far = far;
+  view.z_near = z_near;
+  view.z_far = z_far;
   return view;
 }
 
