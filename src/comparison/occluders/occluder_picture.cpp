@@ -62,14 +62,14 @@ void OccluderPicture::draw(const OccluderSet& set, std::span<const NearOccluder>
 // Whether a part of a sphere may be in the picture.
 bool OccluderPicture::inPicture(const Vec3d& center, double radius) const {
   const double reach = radius * side_length_;
-  return center.z + radius > view_.z_near && center.z * tan_half_ - std::abs(center.x) > -reach &&
+  return center.z + radius > view_.near && center.z * tan_half_ - std::abs(center.x) > -reach &&
          center.z * tan_half_ - std::abs(center.y) > -reach;
 }
 
 // Cuts polygon_ to what is in the picture. False: nothing.
 bool OccluderPicture::clip() {
   const Corner cut{};
-  const double t = tan_half_, near = view_.z_near;
+  const double t = tan_half_, near = view_.near;
   return clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return p.z - near; }) &&
          clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z - p.x; }) &&
          clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z + p.x; }) &&

@@ -27,7 +27,7 @@ bool project(const Box& box, const PixelView& view, std::uint32_t resolution, Oc
     const Vec3d corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
                        (i & 4) != 0 ? box.max.z : box.min.z);
     const Vec3d c = view.toCamera(corner - view.eye);
-    if (!(c.z > view.z_near)) {
+    if (!(c.z > view.near)) {
       return false;
     }
     left = std::min(left, view.pixelX(c));

@@ -57,7 +57,7 @@ Vec3d pointNear(const EyeBox& box, const Ray& ray) {
 Vec3f pointInPixel(const PixelView& view, const Box& box, const BufferPixel& pixel) {
   const EyeBox eye_box = EyeBox::of(box, view.eye);
   const Ray ray = rayThrough(view, pixel);
-  const Stretch stretch = stretchIn(eye_box, ray, view.z_near);
+  const Stretch stretch = stretchIn(eye_box, ray, view.near);
   const Vec3d point = stretch.begin <= stretch.end ? ray.at(stretch.begin) : pointNear(eye_box, ray);
   return max(box.min, min(Vec3f(view.eye + point), box.max));
 }

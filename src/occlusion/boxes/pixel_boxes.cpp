@@ -436,9 +436,9 @@ BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std
   sides[3] = rounded(view.forward * ((view.height - view.middle_y) / view.scale_y) - view.up);
   side_size = roundedUp(1.0 + std::max(view.reachX() / view.scale_x, view.reachY() / view.scale_y));
   near_min = roundedDown(view.frustum_near);
-  near_max = roundedUp(view.z_near);
-  far_min = roundedDown(view.z_far);
-  far_max = roundedUp(view.z_far);
+  near_max = roundedUp(view.near);
+  far_min = roundedDown(view.far);
+  far_max = roundedUp(view.far);
   scale_x = static_cast<float>(view.scale_x);
   scale_y = static_cast<float>(view.scale_y);
   middle_x = static_cast<float>(view.middle_x);

@@ -46,7 +46,7 @@ void PolygonBuilder::activate(const PolygonProjection& projection, const Eye& ey
   const PixelView& view = projection.view();
   // Occluders whose position error exceeds the guard band around the buffer are skipped.
   if (seen && keepsShape(set[id], inset) &&
-      projection.marginAt(inset, 1.0 / std::max(seen->nearest, view.z_near)) <
+      projection.marginAt(inset, 1.0 / std::max(seen->nearest, view.near)) <
           0.5 * std::min(view.width, view.height)) {
     active_.add(*seen, chosen, inset);
   }
@@ -97,10 +97,10 @@ void PolygonBuilder::build(const PolygonProjection& projection, const OccluderSe
   Eye eye;
   eye.position = view.eye;
   eye.forward = view.forward;
-  eye.near = view.z_near;
+  eye.near = view.near;
   eye.orthographic = view.orthographic;
   takeChosen(projection, eye, set, chosen, polygons);
-  const double clip_depth = active_.commonClipDepth(view.z_near);
+  const double clip_depth = active_.commonClipDepth(view.near);
   for (std::uint32_t number = 0; number < active_.size(); ++number) {
     appendPolygon(projection, eye, set, number, clip_depth, polygons);
   }

@@ -27,7 +27,7 @@ double reachOf(const Box& box, const PixelView& view) {
 void BoxExtents::begin(const PixelView& view, const Box& bounds, const DepthTarget& target) {
   view_ = view;
   target_ = target;
-  clip_depth_ = view.z_near * (1.0 + kNearMargin);
+  clip_depth_ = view.near * (1.0 + kNearMargin);
   setViewers();
   projection_ = BoxProjection(view, target.width, target.height);
   batches_ = view.stretch * reachOf(bounds, view) * std::max(view.scale_x, view.scale_y) +
@@ -106,7 +106,7 @@ bool BoxExtents::of(const Box& box, BoxExtent& extent) const {
   const Vec3d spare(rounding, rounding, rounding), low = middle - size - spare, high = middle + size + spare;
   extent.among_viewers = low.x < viewers_max_.x && high.x > viewers_min_.x && low.y < viewers_max_.y &&
                          high.y > viewers_min_.y && low.z < viewers_max_.z && high.z > viewers_min_.z;
-  extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.z_near;
+  extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
   const double pixels = view.stretch * reach * scale + std::abs(view.middle_x) + std::abs(view.middle_y);
