@@ -187,7 +187,7 @@ TEST(ViewFromClip, MeasuresInTheUnitsOfTheScene) {
   // The view matrix turns metres of the scene into centimetres; the projection is in centimetres.
   Window centimetres = kWindow;
   for (double* length : {&centimetres.left, &centimetres.right, &centimetres.bottom, &centimetres.top,
-                         &centimetres.z_near, &centimetres.z_far}) {
+                         &centimetres.near, &centimetres.far}) {
     *length *= 100.0;
   }
   expectView(viewFromClip(glFrustum(centimetres) * scaling(100, 100, 100) * lookAt(someCamera())),
