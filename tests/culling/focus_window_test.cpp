@@ -57,8 +57,8 @@ TEST(FocusWindow, HasTheEyeTheAxesAndTheNearPlaneOfItsView) {
     EXPECT_EQ(window.forward, view.forward);
     EXPECT_EQ(window.right, view.right);
     EXPECT_EQ(window.up, view.up);
-    EXPECT_EQ(window.near, view.z_near);
-    EXPECT_EQ(window.far, view.z_far);
+    EXPECT_EQ(window.z_near, view.z_near);
+    EXPECT_EQ(window.z_far, view.z_far);
     EXPECT_TRUE(validate(window).has_value());
   }
 }

@@ -37,7 +37,7 @@ struct BoxAndPixel {
     }
     const Vec3d camera = view.toCamera(point - view.eye);
     const double x = view.pixelX(camera), y = view.pixelY(camera);
-    in_view = box.wellFormed() && camera.z > 2.0 * view.z_near && camera.z < view.z_far && x > 0.0 &&
+    in_view = box.wellFormed() && camera.z > 2.0 * view.near && camera.z < view.far && x > 0.0 &&
               y > 0.0 && x < kColumns && y < kRows;
     if (in_view) {
       pixel = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
@@ -100,7 +100,7 @@ TEST(PointInPixel, IsTheNearestOfTheBoxOnTheRay) {
                            bed.view.unit_y * ((bed.pixel.y + 0.5 - bed.view.middle_y) / bed.view.scale_y);
       const Vec3d on_ray =
           bed.view.eye + (bed.view.orthographic ? across : across * depth) + bed.view.unit_z * depth;
-      bool inside = depth > bed.view.z_near;
+      bool inside = depth > bed.view.near;
       for (int axis = 0; axis < 3; ++axis) {
         const double margin = bed.rounding() + 1e-3 * pixel_size;
         inside =

@@ -78,7 +78,7 @@ SurfaceSet randomChains(test::ViewRandom& random, const View& view, std::size_t 
 std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const PixelView& view, std::size_t first,
                               std::size_t count) {
   ChainEdges edges;
-  edges.begin(set, view, view.z_near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
+  edges.begin(set, view, view.near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
   for (std::size_t i = first; i < first + count; ++i) {
     edges.add(static_cast<std::uint32_t>(i), 1);
   }
@@ -122,7 +122,7 @@ TEST(ChainEdges, AreTheSameWithEveryInstructionSetAndInAnyCompany) {
       const std::vector<EdgeBits> one = edgesOf(set, view, i, 1);
       alone.insert(alone.end(), one.begin(), one.end());
       for (const Vec3f& vertex : set.verticesOf(set.chains[i])) {
-        cut += view.toCamera(Vec3d(vertex) - view.eye).z < view.z_near ? 1 : 0;
+        cut += view.toCamera(Vec3d(vertex) - view.eye).z < view.near ? 1 : 0;
       }
     }
     EXPECT_EQ(alone, all) << "view " << n << (cut > cut_before ? ", with cut edges" : "");

@@ -328,7 +328,7 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheBufferIsNotInFrontOf) {
       const double x = camera.z > 0.0 || bed.view.orthographic ? bed.view.pixelX(camera) : -1.0;
       const double y = camera.z > 0.0 || bed.view.orthographic ? bed.view.pixelY(camera) : -1.0;
       const double margin = 1e-9 * bed.buffer.width;
-      if (camera.z < bed.view.z_near || camera.z > bed.view.z_far ||
+      if (camera.z < bed.view.near || camera.z > bed.view.far ||
           !(x > margin && x < bed.buffer.width - margin) || !(y > margin && y < bed.buffer.height - margin)) {
         continue;
       }

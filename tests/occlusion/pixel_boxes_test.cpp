@@ -90,7 +90,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     if (image.place == BoxPlace::kUnbounded) {
       ++unbounded;
       // The box reaches the near plane, or almost does in relation to its size.
-      const bool near = exact.z0 <= view.z_near * (1 + 0x1p-20L) + rounding;
+      const bool near = exact.z0 <= view.near * (1 + 0x1p-20L) + rounding;
       EXPECT_TRUE(near || (!view.orthographic && exact.z0 < 200 * rounding)) << "seed " << seed;
       EXPECT_LT(exact.beyond_side,
                 rounding * (1 + view.reachX() / view.scale_x + view.reachY() / view.scale_y))
@@ -99,12 +99,12 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     }
     if (image.place == BoxPlace::kOutside) {
       ++outside;
-      const bool off = exact.beyond_side > 0 || exact.z1 < view.z_near || exact.z0 > view.z_far;
+      const bool off = exact.beyond_side > 0 || exact.z1 < view.near || exact.z0 > view.far;
       EXPECT_TRUE(off) << "seed " << seed;
       continue;
     }
     ++on_buffer;
-    ASSERT_GT(exact.z0, view.z_near) << "seed " << seed;
+    ASSERT_GT(exact.z0, view.near) << "seed " << seed;
     // The allowed error of a position, pixels.
     const Wide ratio = view.orthographic ? 0 : rounding / exact.z0;
     const auto slack = [&](Wide at, double scale, double middle) {
@@ -125,7 +125,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     EXPECT_GE(image.y0, pixelOf(exact.y0 - bottom, kPixelsHigh)) << "seed " << seed;
     EXPECT_LE(image.y1, pixelOf(exact.y1 + top, kPixelsHigh)) << "seed " << seed;
     EXPECT_FALSE(exact.x1 + right < 0 || exact.x0 - left > kPixelsWide || exact.y1 + top < 0 ||
-                 exact.y0 - bottom > kPixelsHigh || exact.z0 > view.z_far * (1 + 0x1p-20L) + rounding)
+                 exact.y0 - bottom > kPixelsHigh || exact.z0 > view.far * (1 + 0x1p-20L) + rounding)
         << "seed " << seed << ": surely outside";
 
     const Wide nearest = view.orthographic ? -exact.z0 : 1 / exact.z0;
@@ -139,10 +139,10 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     EXPECT_GE(image.farthest, farthest - reciprocal_depth_slack(exact.z1)) << "seed " << seed;
 
     const bool inside = exact.x0 >= 0 && exact.x1 <= kPixelsWide && exact.y0 >= 0 &&
-                        exact.y1 <= kPixelsHigh && exact.z1 <= view.z_far;
+                        exact.y1 <= kPixelsHigh && exact.z1 <= view.far;
     const bool well_inside = exact.x0 > left && exact.x1 + right < kPixelsWide && exact.y0 > bottom &&
                              exact.y1 + top < kPixelsHigh &&
-                             exact.z1 * (1 + 0x1p-20L) + rounding < view.z_far;
+                             exact.z1 * (1 + 0x1p-20L) + rounding < view.far;
     EXPECT_TRUE(!image.whole || inside) << "seed " << seed;
     EXPECT_TRUE(image.whole || !well_inside) << "seed " << seed;
     whole += image.whole ? 1 : 0;
@@ -277,7 +277,7 @@ TEST(PixelPoints, LieInTheirPixelsAndAreNoFartherThanTheySay) {
     }
     ++known;
     ASSERT_EQ(as_box.place, BoxPlace::kOnBuffer) << "seed " << seed;
-    EXPECT_TRUE(exact.z0 > view.z_near && exact.z0 < view.z_far) << "seed " << seed;
+    EXPECT_TRUE(exact.z0 > view.near && exact.z0 < view.far) << "seed " << seed;
     EXPECT_EQ(static_cast<Wide>(image.x), std::floor(exact.x0)) << "seed " << seed;
     EXPECT_EQ(static_cast<Wide>(image.y), std::floor(exact.y0)) << "seed " << seed;
     EXPECT_LE(image.farthest, view.orthographic ? -exact.z0 : 1 / exact.z0) << "seed " << seed;

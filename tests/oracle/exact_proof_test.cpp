@@ -89,8 +89,8 @@ class Maker {
   View view() {
     View view = frontView();
     view.orthographic = family_.orthographic;
-    view.z_near = oneOf(family_.z_near);
-    view.z_far = oneOf(family_.z_far);
+    view.z_near = oneOf(family_.near);
+    view.z_far = oneOf(family_.far);
     view.tan_half_fovy = oneOf(family_.tangents);
     view.ortho_height = 2.0 * oneOf(family_.tangents);
     view.aspect = oneOf(family_.aspects);
