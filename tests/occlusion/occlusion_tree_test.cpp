@@ -36,6 +36,23 @@ TEST(OcclusionTree, WithoutOccludersHidesNothingInView) {
   }
 }
 
+TEST(OcclusionTree, WithoutTheFrustumBoxesOutsideTheViewAreHiddenByOccludersAlone) {
+  const std::vector<OraclePolygon> walls{wall(-40, 40, -4, 4, -5)};
+  const OccluderSet set = setOf(walls);
+  const Box behind{{29, -1, -12}, {31, 1, -10}}, before{{29, -1, -4}, {31, 1, -3}},
+      beside{{110, -1, -12}, {112, 1, -10}}, at_the_end{{75, -1, -12}, {90, 1, -10}};
+  for (const auto variant : kTreeVariants) {
+    for (const bool clip : {false, true}) {
+      OcclusionTree tree({.variant = variant, .clip_to_frustum = clip});
+      tree.build(kLookingBack, set, all(set));
+      EXPECT_EQ(tree.classify(behind), Visibility::kHidden);
+      EXPECT_EQ(tree.classify(before), clip ? Visibility::kHidden : Visibility::kVisible);
+      EXPECT_EQ(tree.classify(beside), clip ? Visibility::kHidden : Visibility::kVisible);
+      EXPECT_EQ(tree.classify(at_the_end), clip ? Visibility::kHidden : Visibility::kPartial);
+    }
+  }
+}
+
 TEST(OcclusionTree, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
   const std::vector<OraclePolygon> walls{wall(-4, 4, -4, 4, -5)};
   for (const auto variant : kTreeVariants) {
