@@ -31,7 +31,6 @@ std::uint32_t DynamicTree::newNode(std::uint32_t height) {
     boxes_.resize(boxes_.size() + kChildren);
     children_.resize(children_.size() + kChildren);
   }
-  ++nodes_of_height_[height];
   NodeData& data = nodes_[node];
   // It may still be listed as loose or worn from its earlier use.
   data = {.height = static_cast<std::uint8_t>(height), .loose = data.loose, .worn = data.worn};
@@ -39,7 +38,6 @@ std::uint32_t DynamicTree::newNode(std::uint32_t height) {
 }
 
 void DynamicTree::freeNode(std::uint32_t node) {
-  --nodes_of_height_[nodes_[node].height];
   nodes_[node].count = 0;
   nodes_[node].parent = kNone;
   free_.push_back(node);
@@ -349,15 +347,26 @@ void DynamicTree::spend(std::uint32_t& steps, std::uint32_t spent) {
   steps_taken_ += spent;
 }
 
+// However many nodes wait, each kind of work gets its part of the steps. Otherwise a crowd that moves in
+// every call would keep the nodes above the leaves from shrinking, and the other tree from being built.
 std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
+  const std::uint32_t kept = steps / 4;
+  steps -= kept;
   for (std::vector<std::uint32_t>& list : loose_) {
-    while (!list.empty() && steps > 0) {
+    std::uint32_t share = steps - steps / 2;
+    steps -= share;
+    const bool has_time_for_all = list.size() * kStepsOfNode <= share;
+    while (!list.empty() && share > 0) {
+      if (!has_time_for_all) {  // in turn, so that none waits for ever where many come in every call
+        std::swap(list[next_loose_++ % list.size()], list.back());
+      }
       const std::uint32_t node = list.back();
       list.pop_back();
       nodes_[node].loose = false;
       tighten(node);
-      spend(steps, kStepsOfNode);
+      spend(share, kStepsOfNode);
     }
+    steps += share;
   }
   while (!worn_.empty() && steps > 0) {
     const std::uint32_t node = worn_.back();
@@ -368,8 +377,9 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
       spend(steps, divideAnew(node));
     }
   }
-  measureSome(steps);
+  steps += kept;
   proceedReplacement(steps);
+  measureSome(steps);
   return steps;
 }
 
@@ -514,7 +524,8 @@ bool DynamicTree::fill(std::uint32_t& steps, std::uint32_t bottom) {
 }
 
 void DynamicTree::build(std::span<const Item> items) {
-  *this = DynamicTree();
+  clear();
+  endReplacement();
   if (items.empty()) {
     return;
   }

@@ -110,8 +110,9 @@ class DynamicTree {
     bool worn = false;        // listed in worn_
     double built_area = 0.0;  // surface area when it was built or split
   };
-  static constexpr std::uint32_t kMaxHeight = 10;  // more than 2^32 items of the fewest children need
-  static constexpr std::uint32_t kFew = 4;         // children of a node after a split, at least
+  static constexpr std::uint32_t kFew = 4;  // children of a node after a split, at least
+  static constexpr std::uint32_t kMaxHeight =
+      16;  // kFew^16 is 2^32: more levels than any number of items needs
 
   // Parts of scratch_ that are to be divided among so many new children of a node; none: all of the node's
   // children are there and have been filled.
@@ -195,8 +196,8 @@ class DynamicTree {
   std::size_t size_ = 0;
   std::array<std::vector<std::uint32_t>, kMaxHeight> loose_;  // nodes, by height
   std::vector<std::uint32_t> worn_;
-  std::array<std::uint32_t, kMaxHeight> nodes_of_height_{};
-  std::size_t scattered_ = 0;  // items that were inserted one by one since the tree was built
+  std::size_t next_loose_ = 0;  // where tidy() looks next in a list of loose nodes
+  std::size_t scattered_ = 0;   // items that were inserted one by one since the tree was built
   Measured measured_;
   std::uint64_t steps_taken_ = 0;
   Replacement replacement_;

@@ -32,7 +32,6 @@ void DynamicTree::clear() {
     list.clear();
   }
   worn_.clear();
-  nodes_of_height_ = {};
   scattered_ = 0;
   measured_ = {};
   scratch_.clear();

@@ -500,7 +500,8 @@ void World::tidy(std::uint32_t steps) {
   if (own.origin_moves) {
     own.goOnToOrigin();
   }
-  const std::uint32_t left = own.moving.tidy(steps);
+  const std::uint32_t kept = steps / 4;  // for what rests: what moves may use up any number of steps
+  const std::uint32_t left = own.moving.tidy(steps - kept) + kept;
   own.settle(std::min<std::uint32_t>(left, 256));
   own.settled.tidy(left);
   if (own.origin_moves && own.moving.replacementIsComplete() && own.settled.replacementIsComplete()) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/random_numbers.h"
@@ -18,7 +19,7 @@ using Item = DynamicTree::Item;
 using Boxes = std::map<std::uint32_t, Box>;  // by number
 
 struct Counts {
-  std::size_t nodes = 0, items = 0;
+  std::size_t nodes = 0;
   double area = 0.0;  // of all nodes
 };
 
@@ -29,7 +30,7 @@ std::string whatIsWrong(const DynamicTree& tree, const Boxes& boxes, bool tight,
   if (tree.root() != DynamicTree::kNone) {
     open.push_back(tree.root());
   }
-  Boxes found;
+  std::vector<std::pair<std::uint32_t, Box>> found;
   while (!open.empty()) {
     const DynamicTree::Node node = tree.node(open.back());
     open.pop_back();
@@ -39,10 +40,7 @@ std::string whatIsWrong(const DynamicTree& tree, const Boxes& boxes, bool tight,
     }
     for (std::size_t i = 0; i < node.boxes.size(); ++i) {
       if (node.leaf) {
-        ++counts.items;
-        if (!found.emplace(node.children[i], node.boxes[i]).second) {
-          return "an item is there twice";
-        }
+        found.emplace_back(node.children[i], node.boxes[i]);
         continue;
       }
       Box below;
@@ -59,7 +57,9 @@ std::string whatIsWrong(const DynamicTree& tree, const Boxes& boxes, bool tight,
       open.push_back(node.children[i]);
     }
   }
-  if (found != boxes) {
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; };
+  std::ranges::sort(found, {}, &std::pair<std::uint32_t, Box>::first);
+  if (!std::ranges::equal(found, boxes, same)) {  // also where an item is there twice
     return "other items";
   }
   for (const auto& [number, box] : boxes) {
@@ -166,6 +166,26 @@ TEST(DynamicTree, IsBuiltOfAnyNumberOfItems) {
       EXPECT_EQ(whatIsWrong(tree, boxes), "") << count << " and " << more;
     }
   }
+}
+
+// Neither a list nor building anew gives back what was reserved: nodes stay where they are in memory.
+TEST(DynamicTree, KeepsTheMemoryThatWasReserved) {
+  RandomBoxes random(4);
+  Boxes boxes;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    boxes[i] = random.next(100.0f, 2.0f);
+  }
+  DynamicTree tree;
+  tree.reserve(8000);
+  tree.insert(itemsOf(boxes));
+  const auto first = [&] { return tree.node(0).boxes.data(); };
+  const Box* const place = first();
+  tree.rebuild();
+  EXPECT_EQ(first(), place);
+  for (std::uint32_t i = 2000; i < 8000; ++i) {
+    tree.insert({i, random.next(100.0f, 2.0f)});
+  }
+  EXPECT_EQ(first(), place);
 }
 
 // A few or all at once, by small steps or anywhere: no box of a node is too small, and after all have moved
@@ -440,7 +460,9 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
       const std::uint64_t before = tree.stepsTaken();
       tree.tidy(300);
       ASSERT_LE(tree.stepsTaken() - before, 2300u);
-      ASSERT_EQ(whatIsWrong(tree, boxes), "") << seed << " " << calls;
+      if (calls % 8 == 0) {
+        ASSERT_EQ(whatIsWrong(tree, boxes), "") << seed << " " << calls;
+      }
       ++calls;
     }
     EXPECT_GT(calls, numbers / 200);
@@ -465,6 +487,35 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
     tree.setBoxes([&](std::uint32_t number) { return others.at(number); });
     EXPECT_FALSE(tree.hasOtherBoxes());
   }
+}
+
+// A crowd in which all go the same way one by one, with far fewer steps than its leaves alone take: the boxes
+// of all nodes follow it, and another tree that was asked for gets done.
+TEST(DynamicTree, ThatMovesMoreThanItsStepsAllowGetsAllWorkDone) {
+  RandomBoxes random(9);
+  Boxes boxes;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    boxes[i] = random.next(20.0f, 1.0f);
+  }
+  DynamicTree tree;
+  tree.build(itemsOf(boxes));
+  const auto frames = [&](std::uint32_t most) {
+    std::uint32_t frame = 0;
+    for (; frame < most && !tree.replacementIsComplete(); ++frame) {
+      for (auto& [number, box] : boxes) {
+        box = {box.min + Vec3f{0.5f, 0, 0}, box.max + Vec3f{0.5f, 0, 0}};
+        tree.move({number, box});
+      }
+      tree.tidy(100);
+    }
+    return frame;
+  };
+  frames(200);
+  EXPECT_LT(wearOf(tree, boxes), 3.0);
+  tree.beginReplacement([&](std::uint32_t number) { return boxes.at(number); });
+  EXPECT_LT(frames(3000), 3000u);
+  tree.takeReplacement();
+  EXPECT_EQ(whatIsWrong(tree, boxes), "");
 }
 
 // A world in which everything moves and comes and goes stays about as good as one built anew.
@@ -493,9 +544,11 @@ TEST(DynamicTree, StaysGoodWhateverChanges) {
       }
     }
     tree.tidy(2000);
-    Counts counts;
-    ASSERT_EQ(whatIsWrong(tree, boxes, false, counts), "") << frame;
-    most_nodes = std::max(most_nodes, counts.nodes);
+    if (frame % 20 == 0) {
+      Counts counts;
+      ASSERT_EQ(whatIsWrong(tree, boxes, false, counts), "") << frame;
+      most_nodes = std::max(most_nodes, counts.nodes);
+    }
   }
   Counts worn, fresh;
   DynamicTree anew;

@@ -118,11 +118,11 @@ class World {
   // A few kilometres from it, single precision and the rounding of double precision make boxes larger and
   // let less hide; nothing else depends on it.
   Vec3d origin() const;
-  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 400 instances,
-  // everything gets its box from the new origin, beside the one from the old origin, which stays in use. Then
-  // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. A move to
-  // another origin that goes on is given up, so this is not for the camera's place in each frame. An origin
-  // that is not finite has no effect.
+  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 400 instances, or
+  // a few times as many while thousands move, everything gets its box from the new origin, beside the one
+  // from the old origin, which stays in use. Then origin() becomes the new one, in a call of tidy(). Cull
+  // again before anything is classified. A move to another origin that goes on is given up, so this is not
+  // for the camera's place in each frame. An origin that is not finite has no effect.
   void moveOrigin(const Vec3d& origin);
   // The same at once, as behind a loading screen. Takes some 120 nanoseconds an instance.
   void setOrigin(const Vec3d& origin);
