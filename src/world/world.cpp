@@ -98,6 +98,7 @@ void WorldData::place(std::uint32_t id) {
   if (box.empty()) {
     unplace(id);
     own.where = Whereabouts::kUnbounded;
+    extras[id].in_unbounded = static_cast<std::uint32_t>(unbounded.size());
     unbounded.emplace_back(id);
   } else if (own.where == Whereabouts::kMoving) {
     moving.move({id, box});
@@ -130,7 +131,10 @@ void WorldData::unplace(std::uint32_t id) {
   } else if (own.where == Whereabouts::kMoving) {
     moving.remove(id);
   } else if (own.where == Whereabouts::kUnbounded) {
-    std::erase(unbounded, InstanceId(id));
+    const std::uint32_t place = extras[id].in_unbounded;
+    extras[unbounded.back().value].in_unbounded = place;
+    unbounded[place] = unbounded.back();
+    unbounded.pop_back();
   }
   own.where = Whereabouts::kNowhere;
 }

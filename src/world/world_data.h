@@ -76,10 +76,19 @@ struct InstanceData {
 
 struct InstanceExtra {
   std::uint64_t mark = 0;
-  std::uint32_t in_mesh = 0;  // its place in MeshData::instances
+  std::uint32_t in_mesh = 0;       // its place in MeshData::instances
+  std::uint32_t in_unbounded = 0;  // with Whereabouts::kUnbounded: its place in WorldData::unbounded
   // With InstanceData::baked: it is that object of those sets.
   std::uint32_t sets = InstanceData::kNone, object = InstanceData::kNone;
 };
+
+// A matrix to world space as one to the space around an origin.
+inline Mat4 relativeTo(const Vec3d& origin, Mat4 world_from_any) {
+  for (int axis = 0; axis < 3; ++axis) {
+    world_from_any(axis, 3) -= origin[axis];
+  }
+  return world_from_any;
+}
 
 struct WorldData {
   // Whether the instance's own surfaces may be drawn.

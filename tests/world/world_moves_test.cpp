@@ -13,6 +13,7 @@
 #include "sightline/world/world_culler.h"
 #include "tests/support/cut_work.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/rounds.h"
 #include "tests/world/world_story.h"
 
 namespace sightline {
@@ -152,7 +153,7 @@ bool isWithin(const View& view, const Vec3d& point) {
 // So many instances that their hierarchies are built anew in slices, all the while they change.
 TEST(WorldMoves, WhateverIsInTheViewIsKeptWhileTheHierarchyIsBuiltAnew) {
   std::size_t kept = 0, shown = 0;
-  for (std::uint32_t seed = 0; seed < 3; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(3u); ++seed) {
     Chance chance(seed);
     Story story(allShapes());
     std::vector<InstanceId> ids;
@@ -225,12 +226,8 @@ TEST(WorldMoves, AnOriginThatComesInSlicesIsAsOneThatComesAtOnce) {
     const Vec3d next = seed == 3 ? Vec3d(2e38, 0, -2e38) : Vec3d(4096, -16, 1 << 20);
     std::vector<InstanceId> ids;
     const auto placement = [&] {
-      Mat4 m = chance.placement(60.0, 6.0);
-      const double towards = static_cast<double>(chance.below(3)) - 1.0;
-      for (int axis = 0; axis < 3; ++axis) {
-        m(axis, 3) += towards * next[axis];
-      }
-      return m;
+      const Mat4 m = chance.placement(60.0, 6.0);
+      return movedBy(m, next * (static_cast<double>(chance.below(3)) - 1.0));
     };
     const auto add = [&] {
       const Mat4 m = placement();
@@ -310,6 +307,78 @@ TEST(WorldMoves, AnOriginThatComesInSlicesIsAsOneThatComesAtOnce) {
     }
     EXPECT_EQ(sliced.world.origin(), next);
   }
+}
+
+// A crowd that takes more steps in each frame than tidy() has.
+TEST(WorldMoves, ACrowdDoesNotKeepAnotherOriginFromComing) {
+  World world;
+  const MeshId box = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+  Chance chance(2);
+  std::vector<InstanceId> crowd;
+  std::vector<Mat4> at;
+  for (int i = 0; i < 2000; ++i) {
+    at.push_back(chance.placement(60.0, 6.0));
+    const InstanceId id = world.add({.mesh = box, .world_from_mesh = at.back(), .moves = i % 2 == 0});
+    if (i % 2 == 0) {
+      crowd.push_back(id);
+    }
+  }
+  world.rebuild();
+  const Vec3d origin(64, 0, 64);
+  world.moveOrigin(origin);
+  int calls = 0;
+  for (; calls < 2000 && world.origin() != origin; ++calls) {
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+      at[2 * i](0, 3) += calls % 2 == 0 ? 0.125 : -0.125;
+      world.setTransform(crowd[i], at[2 * i]);
+    }
+    world.tidy(200);
+  }
+  EXPECT_EQ(world.origin(), origin);
+}
+
+// Instances of a mesh without triangles have no box, and are in every answer until they go, one by one.
+TEST(WorldMoves, ThoseWithoutABoxComeAndGoInAnyOrder) {
+  World world;
+  const MeshId empty = world.addMesh(*makeMesh(MeshView{})),
+               box = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+  WorldCuller culler({.occlusion = false});
+  Chance chance(8);
+  std::vector<InstanceId> there;  // ascending
+  const auto sort = [&] { std::ranges::sort(there); };
+  const auto expectAll = [&] {
+    culler.cull(world, viewFrom({0, 0, 1000}, {0, 0, 1}));
+    EXPECT_TRUE(std::ranges::equal(culler.visible(), there));
+  };
+  for (int round = 0; round < 60; ++round) {
+    for (int i = 0; i < 8; ++i) {
+      there.push_back(world.add({.mesh = empty}));
+    }
+    sort();
+    expectAll();
+    for (int i = 0; i < 6; ++i) {
+      const std::size_t which = chance.below(static_cast<std::uint32_t>(there.size()));
+      const InstanceId id = there[which];
+      if (i % 3 == 0) {
+        world.setTransform(id, chance.placement(60.0, 6.0));  // it has no box elsewhere either
+        continue;
+      }
+      if (i % 3 == 1) {
+        world.replace(id, {.mesh = box});
+      } else {
+        world.setShown(id, false);
+      }
+      there.erase(there.begin() + static_cast<std::ptrdiff_t>(which));
+    }
+    expectAll();
+    if (round % 20 == 10) {
+      world.setOrigin({static_cast<double>(round), 0, 0});
+      expectAll();
+    }
+  }
+  world.removeMesh(empty);
+  there.clear();
+  expectAll();
 }
 
 TEST(WorldMoves, InstancesWithoutAMatrixStay) {
