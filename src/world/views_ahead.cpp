@@ -15,8 +15,29 @@ Vec3d turned(const Vec3d& v, const Vec3d& axis, double angle) {
 // The tangent of an angle of that tangent, made larger.
 double wider(double tangent, double angle) {
   constexpr double kWidest = 1.3;  // radians
-  return angle == 0.0 ? tangent
-                      : std::tan(std::max(std::atan(tangent), std::min(std::atan(tangent) + angle, kWidest)));
+  return std::tan(std::max(std::atan(tangent), std::min(std::atan(tangent) + angle, kWidest)));
+}
+
+// Moves all borders of a view outwards: by an angle, or by a length if the view is orthographic. The axis of
+// a view may be nearer to one border than to the other, or outside of both.
+void widen(View& view, double by) {
+  if (by == 0.0) {
+    return;
+  }
+  const auto outwards = [&](double border) { return view.orthographic ? border + by : wider(border, by); };
+  const auto both = [&](double& half, double& shift) {
+    const double high = outwards(half * (1.0 + shift)), low = -outwards(half * (1.0 - shift));
+    half = 0.5 * (high - low);
+    shift = (high + low) / (high - low);
+  };
+  double& size = view.orthographic ? view.ortho_height : view.tan_half_fovy;
+  const double halves = view.orthographic ? 0.5 : 1.0;
+  double height = halves * size;
+  double width = height * view.aspect;
+  both(height, view.shift_y);
+  both(width, view.shift_x);
+  size = height / halves;
+  view.aspect = width / height;
 }
 
 }  // namespace
@@ -36,17 +57,13 @@ void viewsAhead(const View& view, const CameraMotion& motion, double seconds, st
       ahead.forward = turned(view.forward, axis, rate * time);
     }
     if (view.orthographic) {
-      ahead.ortho_height += 2.0 * motion.spread * time;
+      widen(ahead, motion.spread * time);
       continue;
     }
     // What is at the side of the frustum moves across it by what the eye may be off.
     const double depth =
         std::isfinite(view.z_far) ? std::sqrt(std::max(view.z_near, 0.01) * view.z_far) : 10.0;
-    const double angle = rate * step + std::atan(motion.spread * time / depth);
-    const double high = wider(view.tan_half_fovy, angle),
-                 wide = wider(view.tan_half_fovy * view.aspect, angle);
-    ahead.tan_half_fovy = high;
-    ahead.aspect = wide / high;
+    widen(ahead, rate * step + std::atan(motion.spread * time / depth));
   }
 }
 

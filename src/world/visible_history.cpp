@@ -3,27 +3,26 @@
 #include <algorithm>
 #include <iterator>
 
+#include "src/world/world_data.h"
+
 namespace sightline {
 
 void VisibleHistory::update(const World& world, const WorldCuller& culler, double seconds) {
   const double step = seconds > 0.0 ? seconds : 0.0;
-  const double last_time_s = time_s_;
   time_s_ += step;
   const float change =
       settings_.fade_in_s > 0.0 ? static_cast<float>(std::min(step / settings_.fade_in_s, 1.0)) : 1.0f;
   states_.resize(std::max(states_.size(), world.idBound()));
-  // An id that appears although it is held may be that of another instance, which was not visible before.
-  for (const InstanceId id : culler.appeared()) {
-    if (states_[id.value].held && states_[id.value].seen_at == last_time_s) {
-      states_[id.value] = {};
-    }
-  }
   std::swap(held_, last_held_);
   held_.clear();
   std::set_union(last_held_.begin(), last_held_.end(), culler.visible().begin(), culler.visible().end(),
                  std::back_inserter(held_));
   std::erase_if(held_, [&](InstanceId id) {
     State& state = states_[id.value];
+    const std::uint64_t born = world.has(id) ? world.data_->instances[id.value].born : 0;
+    if (state.born != born) {  // another instance has the id by now
+      state = {.born = born};
+    }
     const bool visible =
         std::binary_search(culler.visible().begin(), culler.visible().end(), id) && world.has(id);
     if (visible) {

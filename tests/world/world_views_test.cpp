@@ -270,6 +270,30 @@ TEST(WorldViews, HistoryHoldsAndFades) {
   EXPECT_EQ(history.opacity(InstanceId(99u)), 0.0f);
 }
 
+// The crate goes while it is held and not seen, and another one that was never seen gets its id.
+TEST(WorldViews, HistoryDoesNotTakeAnotherForOneThatItHolds) {
+  Story story(allShapes());
+  Mat4 at;
+  at(2, 3) = -5.0;
+  const InstanceId crate = story.add(0, at);
+  const View to = viewFrom({0, 0, 4}, {0, 0, -1}), away = viewFrom({0, 0, 4}, {0, 0, 1});
+  WorldCuller culler;
+  VisibleHistory history({.hold_s = 1.0, .fade_in_s = 0.5});
+  const auto frame = [&](const View& view) {
+    culler.cull(story.world, view);
+    history.update(story.world, culler, 0.125);
+  };
+  frame(to);
+  frame(away);
+  EXPECT_EQ(history.held().size(), 1u);
+  story.remove(crate);
+  ASSERT_EQ(story.add(0, at), crate);
+  frame(away);
+  EXPECT_TRUE(history.held().empty());
+  frame(to);
+  EXPECT_EQ(history.opacity(crate), 0.25f);
+}
+
 // A camera walks past the end of a wall; the crate behind it is foreseen half a second before it is seen.
 TEST(WorldViews, WhatWillBeSeenIsForeseen) {
   Story story(allShapes());
@@ -318,6 +342,41 @@ TEST(WorldViews, AViewAheadHasWhatTheCameraTurnsTo) {
   viewsAhead(wide, {.turn_rad_per_s = {5, 5, 5}}, 0.5, views);
   EXPECT_GE(views[0].tan_half_fovy, 20.0 - 1e-9);
   viewsAhead(view, {}, 0.5, {});
+}
+
+// The axis of an off-centre view is nearer to one border, or outside of both, as in a tile of a large
+// display.
+TEST(WorldViews, AViewAheadIsWiderToAllSidesHoweverItIsShifted) {
+  for (const double shift : {0.0, 0.5, -0.5, 1.2, -1.2, 2.0}) {
+    for (const bool orthographic : {false, true}) {
+      View view = viewFrom({0, 0, 0}, {0, 0, -1});
+      view.orthographic = orthographic;
+      view.tan_half_fovy = 0.5;
+      view.ortho_height = 4.0;
+      view.shift_x = shift;
+      view.shift_y = -0.75 * shift;
+      std::array<View, 2> views;
+      viewsAhead(view, {.turn_rad_per_s = {0, 0.5, 0}, .spread = 1.0}, 0.25, views);
+      // Borders to the right and to the left, up and down, each outwards.
+      const auto borders = [&](const View& of) {
+        const double high = orthographic ? 0.5 * of.ortho_height : of.tan_half_fovy, wide = high * of.aspect;
+        return std::array{wide * (1.0 + of.shift_x), wide * (1.0 - of.shift_x), high * (1.0 + of.shift_y),
+                          high * (1.0 - of.shift_y)};
+      };
+      const auto before = borders(view);
+      for (std::size_t i = 0; i < views.size(); ++i) {
+        EXPECT_TRUE(validate(views[i]));
+        // By a metre a second, or by the angle turned until the next view.
+        const double time = 0.125 * static_cast<double>(i + 1), angle = 0.5 * 0.125;
+        for (std::size_t border = 0; border < 4; ++border) {
+          const double least =
+              orthographic ? before[border] + time : std::tan(std::atan(before[border]) + angle);
+          EXPECT_GE(borders(views[i])[border], least - 1e-9) << shift << " " << border;
+          EXPECT_LE(borders(views[i])[border], least + 0.5) << shift << " " << border;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -137,10 +137,10 @@ class World {
 
   // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
   // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
-  // it. Positions count as equal, and as being, where they are in single precision from the middle of the
-  // join (WorldJoin::rounding); where that could show (WorldCullerSettings::join_rounding), members hide by
-  // their own meshes. One that moves, is hidden or is removed later leaves the join; what was connected
-  // with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
+  // it. Positions are rounded to single precision, relative to the middle of the join
+  // (WorldJoin::rounding), and touch where they are equal then. Where rounding could be seen
+  // (WorldCullerSettings::join_rounding), members hide by their own meshes. One that moves, is hidden or is
+  // removed later leaves the join; what was connected with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
   // culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor) const;
@@ -178,6 +178,7 @@ class World {
   friend class WorldCuller;
   friend class WorldSight;
   friend class ShadowCasters;
+  friend class VisibleHistory;
   std::unique_ptr<world::WorldData> data_;
 };
 
