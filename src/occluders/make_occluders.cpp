@@ -26,7 +26,7 @@ struct SoundPolygons {
   occluders::IdStore ids;
   std::vector<FoundPolygon> polygons;
   std::vector<ObjectId> object_of;  // by polygon
-  double largest = 0.0;             // coordinate of all of their vertices
+  std::vector<double> largest;      // by polygon: the largest coordinate of its vertices, without its sign
 };
 
 // The corners of all polygons, one after the other. Equal ones get one vertex id, as in a welded mesh.
@@ -84,10 +84,10 @@ SoundPolygons soundOnesOf(std::span<const OccluderPolygon> polygons, const Scene
       ++report.degenerate;
       continue;
     }
-    sound.largest = std::max(sound.largest, largest);
     sound.polygons.push_back(occluders::foundPolygon(outline, *plane, sound.ids));
     sound.polygons.back().double_sided = polygon.double_sided;
     sound.object_of.push_back(polygon.object);
+    sound.largest.push_back(largest);
     report.used += outline.triangle_count;
   }
   return sound;
@@ -113,12 +113,15 @@ std::vector<RankedPolygon> rank(const SoundPolygons& sound) {
 void findBodies(const Scene& corners, std::span<const RankedPolygon> by_object, SoundPolygons& sound) {
   occluders::BodyFinder bodies(corners.positions);
   std::vector<FoundPolygon*> of_object;
+  double largest = 0.0;
   for (std::size_t i = 0; i < by_object.size(); ++i) {
-    of_object.push_back(
-        &sound.polygons[static_cast<std::size_t>(by_object[i].polygon - sound.polygons.data())]);
+    const auto polygon = static_cast<std::size_t>(by_object[i].polygon - sound.polygons.data());
+    of_object.push_back(&sound.polygons[polygon]);
+    largest = std::max(largest, sound.largest[polygon]);
     if (i + 1 == by_object.size() || by_object[i + 1].object != by_object[i].object) {
-      bodies.find(of_object, occluders::roundingTolerance(sound.largest));
+      bodies.find(of_object, occluders::roundingTolerance(largest));
       of_object.clear();
+      largest = 0.0;
     }
   }
 }

@@ -225,7 +225,6 @@ TEST(Bodies, ABoxWithAVertexOfOneSideAloneOnAnEdgeIsNone) {
 
 // Two sheets back to back, of one outline with a notch, each cut in two elsewhere: all edges have a mate and
 // no vertex lies before any plane, but nothing is enclosed and the outline is not convex.
-// Disabled: findBodies takes it for a body.
 TEST(Bodies, AFlatSheetWithANotchIsNone) {
   const OccluderSet set = made({{test::notchedSheet()}});
   ASSERT_EQ(set.occluders.size(), 4u);
@@ -240,6 +239,14 @@ TEST(Bodies, TwoBoxesOfOneObjectAreTwo) {
       EXPECT_EQ(shapeOf(body), (Shape{6, 12, 8}));
       expectSound(set, body);
     }
+  }
+}
+
+// What is small beside the rounding of another object's corners is not flat for that.
+TEST(Bodies, ABoxBesideAVastOneOfAnotherObjectIsOne) {
+  const Solid vast = test::block({-1e6f, -1e6f, -1e6f}, {1e6f, 1e6f, -1e5f});
+  for (const OccluderSet& set : {found({{kCube}, {vast}}), made({{kCube}, {vast}})}) {
+    EXPECT_EQ(set.bodies.size(), 2u);
   }
 }
 
