@@ -173,6 +173,17 @@ inline Error unsoundArrays(const std::string& name, const std::string& flaw) {
   return Error{"the " + name + " are not sound, " + flaw + ": find them again"};
 }
 
+// Whether an array of this size has the items of a range.
+inline bool isRange(std::uint64_t first, std::uint64_t count, std::size_t size) {
+  return first + count <= size;
+}
+
+// Whether the memory of a bool in an item is 0 or 1: as a bool, nothing else may be looked at.
+template <typename Item>
+bool isBoolAt(const Item& item, std::size_t offset) {
+  return reinterpret_cast<const unsigned char*>(&item)[offset] <= 1;
+}
+
 // Whether numbers say where the rows of `items` items begin, and one more where the last one ends. They may
 // be missing where there are no rows.
 inline bool areRowStarts(std::span<const std::uint32_t> first, std::size_t rows, std::size_t items) {

@@ -52,22 +52,16 @@ bool all(const Items& items, Sound&& sound) {
   return std::all_of(items.begin(), items.end(), sound);
 }
 
-bool fits(std::uint64_t first, std::uint64_t count, std::size_t size) {
-  return first + count <= size;
-}
-
 bool isFinitePlane(const Plane& plane) {
   return isFinite(plane.normal) && std::isfinite(plane.offset);
 }
 
 bool areOccludersSound(const OccluderSet& set, std::uint32_t objects) {
-  const auto whole_bools = [](const Occluder& o) {
-    const auto* memory = reinterpret_cast<const unsigned char*>(&o);
-    return memory[offsetof(Occluder, double_sided)] <= 1 && memory[offsetof(Occluder, watertight_edges)] <= 1;
-  };
   return set.edges.size() == set.vertices.size() && all(set.occluders, [&](const Occluder& o) {
-           return whole_bools(o) && o.vertex_count >= 3 && o.vertex_count <= 64 &&
-                  fits(o.first_vertex, o.vertex_count, set.vertices.size()) &&
+           return base::isBoolAt(o, offsetof(Occluder, double_sided)) &&
+                  base::isBoolAt(o, offsetof(Occluder, watertight_edges)) && o.vertex_count >= 3 &&
+                  o.vertex_count <= 64 &&
+                  base::isRange(o.first_vertex, o.vertex_count, set.vertices.size()) &&
                   (!o.object.valid() || o.object.value < objects) && std::isfinite(o.area) &&
                   std::isfinite(o.slack) && o.slack >= 0.0f && isFinite(o.centroid) && isFinitePlane(o.plane);
          });
@@ -76,9 +70,9 @@ bool areOccludersSound(const OccluderSet& set, std::uint32_t objects) {
 bool areEdgesSound(const OccluderSet& set) {
   return all(set.edges, [&](const OccluderEdge& edge) {
     return edge.line < set.lines.size() && edge.mesh_edge_count <= kMaxMeshEdges &&
-           fits(edge.first_neighbour, edge.neighbour_count, set.neighbours.size()) &&
+           base::isRange(edge.first_neighbour, edge.neighbour_count, set.neighbours.size()) &&
            (edge.mesh_edge_count == 0 ||
-            fits(edge.first_edge_vertex, edge.mesh_edge_count - 1u, set.edge_vertices.size())) &&
+            base::isRange(edge.first_edge_vertex, edge.mesh_edge_count - 1u, set.edge_vertices.size())) &&
            all(set.neighboursOf(edge), [&](const EdgeNeighbour& neighbour) {
              return neighbour.occluder.value < set.occluders.size() &&
                     neighbour.mesh_edge < edge.mesh_edge_count;
@@ -105,9 +99,9 @@ bool areBodiesSound(const OccluderSet& set) {
          all(set.bodies, [&](const OccluderBody& body) {
            return body.face_count > 0 && body.face_count <= kMaxBodyFaces &&
                   body.vertex_count <= kMaxBodyVertices && body.edge_count <= kMaxBodyEdges &&
-                  fits(body.first_vertex, body.vertex_count, set.body_vertices.size()) &&
-                  fits(body.first_edge, body.edge_count, set.body_edges.size()) &&
-                  fits(body.first_face, body.face_count, set.body_faces.size()) &&
+                  base::isRange(body.first_vertex, body.vertex_count, set.body_vertices.size()) &&
+                  base::isRange(body.first_edge, body.edge_count, set.body_edges.size()) &&
+                  base::isRange(body.first_face, body.face_count, set.body_faces.size()) &&
                   std::isfinite(body.slack) && body.slack >= 0.0f && body.bounds.wellFormed() &&
                   all(set.edgesOf(body),
                       [&](const BodyEdge& edge) {

@@ -47,10 +47,7 @@ Box boxAround(const View& view) {
 
 // Not well formed if the instance has none, or is not there any more.
 Box boxOf(const WorldData& data, InstanceId id) {
-  const bool has =
-      id.value < data.instances.size() && (data.instances[id.value].where == Whereabouts::kSettled ||
-                                           data.instances[id.value].where == Whereabouts::kMoving);
-  return has ? data.boxOf(id.value) : Box{};
+  return id.value < data.instances.size() && data.hasBox(id.value) ? data.boxOf(id.value) : Box{};
 }
 
 // The light as shadow volumes see it.
@@ -128,9 +125,8 @@ void ShadowCasters::Impl::drawReceivers(const WorldData& data, const PixelView& 
     return;
   }
   Box volume;
-  for (View view : seen.views) {
-    view.eye = view.eye - data.origin;
-    volume.extend(boxAround(view));
+  for (const View& view : seen.views) {
+    volume.extend(boxAround(data.fromOrigin(view)));
   }
   boxes.clear();
   for (const InstanceId id : seen.visible) {
@@ -176,9 +172,8 @@ void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, 
   const Light from{light_view.orthographic, light_view.eye - data.origin, light_view.forward,
                    light_view.z_far - light_view.z_near};
   frusta.clear();
-  for (View view : views) {
-    view.eye = view.eye - data.origin;
-    frusta.push_back(frustumOf(view));
+  for (const View& view : views) {
+    frusta.push_back(frustumOf(data.fromOrigin(view)));
   }
   boxes.clear();
   for (const InstanceId id : light.visible()) {
@@ -218,9 +213,7 @@ void ShadowCasters::cull(const World& world, const View& light, const WorldCulle
     }
     return;
   }
-  View from_origin = view;
-  from_origin.eye = view.eye - data.origin;
-  const PixelView map(from_origin, own.pixels, own.pixels);
+  const PixelView map(data.fromOrigin(view), own.pixels, own.pixels);
   own.drawReceivers(data, map, camera);
   own.choose(data, view, map,
              camera.counts.view_fault != nullptr ? std::span<const View>() : std::span(camera.views));

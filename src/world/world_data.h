@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sightline/scene/camera.h"
 #include "sightline/world/world.h"
 #include "src/base/rows.h"
 #include "src/hierarchy/dynamic_tree.h"
@@ -146,12 +147,11 @@ struct WorldData {
   void takeOrigin();
   void placeAnew(std::span<const InstanceId> instances);
   // The matrix that takes points of an instance's mesh to where boxes are.
-  Mat4 originFromMesh(std::uint32_t id) const { return fromOrigin(world_from_mesh[id]); }
-  Mat4 fromOrigin(Mat4 world_from_any) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      world_from_any(axis, 3) -= origin[axis];
-    }
-    return world_from_any;
+  Mat4 originFromMesh(std::uint32_t id) const { return relativeTo(origin, world_from_mesh[id]); }
+  // A view of world space as seen from the origin.
+  View fromOrigin(View view_world) const {
+    view_world.eye = view_world.eye - origin;
+    return view_world;
   }
   std::uint32_t addInstance(const Instance& instance);
   void settle(std::uint32_t looks);

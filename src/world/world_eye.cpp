@@ -32,8 +32,7 @@ void addAll(const DynamicTree& tree, std::uint32_t number, IdBits& kept) {
 }
 
 View WorldEye::begin(const WorldData& data, const View& view_world) {
-  View view = view_world;
-  view.eye = view.eye - data.origin;
+  const View view = data.fromOrigin(view_world);
   // The two parts of the offset may be much larger than their sum.
   clip_ = {clip_world_.normal, clip_world_.evaluate(data.origin)};
   clip_rounding_ = 0x1p-48 * (dot(abs(clip_world_.normal), abs(data.origin)) + std::abs(clip_world_.offset));

@@ -92,10 +92,7 @@ WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const Surfac
   scene.materials = {{.double_sided = false}, {.double_sided = true}};
   for (const InstanceId id : join.instances) {
     join.versions.push_back(own.instances[id.value].version);
-    Mat4 m = own.world_from_mesh[id.value];  // from the mesh to the join's own space
-    for (int axis = 0; axis < 3; ++axis) {
-      m(axis, 3) -= join.origin[axis];
-    }
+    const Mat4 m = relativeTo(join.origin, own.world_from_mesh[id.value]);
     const SurfaceSet& surfaces = own.meshes[own.instances[id.value].mesh].mesh.surfaces;
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
     for (const Vec3f& vertex : surfaces.vertices) {

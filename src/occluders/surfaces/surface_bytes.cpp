@@ -46,10 +46,6 @@ void forEachSurfaceArray(Set& set, Visit&& visit) {
   visit(set.chain_vertices);
 }
 
-bool isRange(std::uint64_t first, std::uint64_t count, std::size_t size) {
-  return first + count <= size;
-}
-
 // It goes on where it could stop: so it takes a fraction of the time of a loop that looks at each number
 // alone.
 bool allBelow(std::span<const std::uint32_t> numbers, std::size_t end) {
@@ -71,12 +67,6 @@ bool followEachOther(const Items& items, FirstOf&& first, CountOf&& count, std::
     end += count(item);
   }
   return end == size;
-}
-
-// Whether the memory of a bool is 0 or 1: nothing else may be looked at.
-template <typename Item>
-bool hasBool(const Item& item, std::size_t offset) {
-  return reinterpret_cast<const unsigned char*>(&item)[offset] <= 1;
 }
 
 bool isSound(const Plane& support, double thickness) {
@@ -152,8 +142,9 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
           set.clusters, [](const SurfaceCluster& c) { return c.first_triangle; },
           [](const SurfaceCluster& c) { return c.triangle_count; }, set.triangles.size() / 3,
           [&](const SurfaceCluster& c) {
-            return hasBool(c, offsetof(SurfaceCluster, double_sided)) && isSound(c.support, c.thickness) &&
-                   isRange(c.first_chain, c.chain_count, set.cluster_chains.size());
+            return base::isBoolAt(c, offsetof(SurfaceCluster, double_sided)) &&
+                   isSound(c.support, c.thickness) &&
+                   base::isRange(c.first_chain, c.chain_count, set.cluster_chains.size());
           })) {
     return "its clusters are broken";
   }
@@ -161,9 +152,9 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
           set.patches, [](const SurfacePatch& p) { return p.first_cluster; },
           [](const SurfacePatch& p) { return p.cluster_count; }, set.clusters.size(),
           [&](const SurfacePatch& p) {
-            return hasBool(p, offsetof(SurfacePatch, double_sided)) && isSound(p.support, p.thickness) &&
-                   p.cone_cosine >= -1.0f && p.cone_cosine <= 1.0f &&
-                   isRange(p.first_chain, p.chain_count, set.patch_chains.size());
+            return base::isBoolAt(p, offsetof(SurfacePatch, double_sided)) &&
+                   isSound(p.support, p.thickness) && p.cone_cosine >= -1.0f && p.cone_cosine <= 1.0f &&
+                   base::isRange(p.first_chain, p.chain_count, set.patch_chains.size());
           })) {
     return "its patches are broken";
   }
