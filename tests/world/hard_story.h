@@ -54,12 +54,7 @@ struct HardStory {
     heading = chance.number(0.0, 6.0);
   }
 
-  Mat4 inWorld(Mat4 m) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      m(axis, 3) += base[axis];
-    }
-    return m;
-  }
+  Mat4 inWorld(const Mat4& m) const { return movedBy(m, base); }
   View inWorld(View view) const {
     view.eye = view.eye + base;
     return view;
@@ -224,6 +219,9 @@ struct HardStory {
         break;
       case 7:
         prepare();
+        if (chance.below(2) == 0 && joins.size() < 8) {
+          joins.push_back(world.use(*std::exchange(prepared, std::nullopt)));
+        }
         break;
       case 8:
         moveSeveral();
@@ -257,22 +255,32 @@ struct HardStory {
   }
 
   // All that is drawn in views of these groups.
-  Story drawn(std::uint32_t groups) const {
-    Story drawn(shapes);
+  ToldScene drawn(std::uint32_t groups) const {
+    ToldScene drawn{shapes};
     for (const auto& [id, piece] : pieces) {
       if (piece.shown && piece.placed && (piece.groups & groups) != 0) {
-        Mat4 m = piece.base_from_mesh;
-        for (int axis = 0; axis < 3; ++axis) {
-          m(axis, 3) += piece.shift[axis];
-        }
-        drawn.told[id] = {piece.shape, m, true};
+        drawn.told[id] = {piece.shape, movedBy(piece.base_from_mesh, piece.shift), true};
       }
     }
     return drawn;
   }
 
-  // What a culler of these groups, which has culled the world for this view from the base, did wrong.
+  // What cullers of these groups, which have culled the world for this view from the base, did wrong.
+  Judged judged(const View& view, std::initializer_list<const WorldCuller*> cullers,
+                std::uint32_t groups) const {
+    Judged judged = judge(drawn(groups), view, cullers);
+    for (const WorldCuller* culler : cullers) {
+      judged.wrong += whatIsWrong(*culler, groups);
+    }
+    return judged;
+  }
   Judged judged(const View& view, const WorldCuller& culler, std::uint32_t groups) const {
+    return judged(view, {&culler}, groups);
+  }
+
+ private:
+  // What a culler keeps although it is not drawn, or leaves out although it has no place.
+  std::string whatIsWrong(const WorldCuller& culler, std::uint32_t groups) const {
     std::string wrong;
     for (const auto& [id, piece] : pieces) {
       const bool draws = piece.shown && (piece.groups & groups) != 0;
@@ -284,9 +292,7 @@ struct HardStory {
     for (const InstanceId id : culler.visible()) {
       wrong += pieces.contains(id.value) ? "" : "instance " + std::to_string(id.value) + " is not there; ";
     }
-    Judged judged = judge(drawn(groups), view, culler);
-    judged.wrong += wrong;
-    return judged;
+    return wrong;
   }
 };
 

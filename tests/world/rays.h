@@ -19,7 +19,7 @@ struct Hit {
 
 class Rays {
  public:
-  explicit Rays(const Story& story) {
+  explicit Rays(const ToldScene& story) {
     std::vector<InstanceId> ids;
     const Scene scene = story.scene(ids);
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {

@@ -18,7 +18,7 @@ namespace {
 using namespace world_story;
 
 TEST(WorldFuzz, WhateverIsSeenIsKeptHoweverTheWorldIsChanged) {
-  std::size_t seen = 0, culled = 0;
+  std::size_t culled = 0;
   const std::array<Vec3d, 4> bases{Vec3d(), Vec3d(20000, 0, -8000), Vec3d(0x1p30, 0x1p20, -0x1p30),
                                    Vec3d(0x1p44, 0, 0x1p40)};
   for (std::uint32_t seed = 0; seed < test::rounds(12u); ++seed) {
@@ -27,44 +27,41 @@ TEST(WorldFuzz, WhateverIsSeenIsKeptHoweverTheWorldIsChanged) {
     WorldCuller every, first({.raster = {.width = 128, .height = 72}, .groups = 1}), sometimes, both;
     for (std::uint32_t frame = 0; frame < 60; ++frame) {
       View view = story.next();
-      view.orthographic = seed % 5 == 4;
+      view.orthographic = seed % 5 % 2 == 1;
       view.ortho_height = 12.0;
       View other = view;
       other.eye = view.eye + view.right * 0.0625;
       every.cull(story.world, story.inWorld(view));
       first.cull(story.world, story.inWorld(view));
       both.cull(story.world, std::array{story.inWorld(view), story.inWorld(other)});
-      if (frame % 5 == 0) {
+      if (frame % 6 == 0) {
         sometimes.cull(story.world, story.inWorld(view));
-        EXPECT_EQ(story.judged(view, sometimes, ~0u).wrong, "") << seed << " " << frame;
       }
       if (frame % 3 == 0) {
-        const Judged judged = story.judged(view, every, ~0u);
+        const Judged judged = frame % 6 == 0 ? story.judged(view, {&every, &both, &sometimes}, ~0u)
+                                             : story.judged(view, {&every, &both}, ~0u);
         EXPECT_EQ(judged.wrong, "") << seed << " " << frame;
-        seen += judged.seen;
         culled += judged.culled;
         EXPECT_EQ(story.judged(view, first, 1).wrong, "") << seed << " " << frame;
-        EXPECT_EQ(story.judged(view, both, ~0u).wrong, "") << seed << " " << frame;
         EXPECT_EQ(story.judged(other, both, ~0u).wrong, "") << seed << " " << frame;
       }
     }
     EXPECT_EQ(story.world.instances(), story.pieces.size());
   }
-  EXPECT_GT(seen, test::rounds(500u));
   EXPECT_GT(culled, test::rounds(500u));
 }
 
 // What no line of sight from a point meets is in no picture from there either.
 TEST(WorldFuzz, LinesOfSightHideNothingThatIsSeen) {
   std::size_t hidden = 0;
-  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(10u); ++seed) {
     HardStory story(seed, seed % 2 == 0 ? Vec3d() : Vec3d(20000, 0, -8000));
     story.world.setOrigin(story.base);
     // Nearer things are in the picture and hide nothing for the line of sight.
     WorldSight sight({.near_distance = 0.25, .groups = 2});
     for (std::uint32_t frame = 0; frame < 40; ++frame) {
       const View view = story.next();
-      const Story drawn = story.drawn(2);
+      const ToldScene drawn = story.drawn(2);
       std::vector<InstanceId> ids;
       const Scene scene = drawn.scene(ids);
       const ExactVisibility exact(scene.view());
@@ -82,7 +79,7 @@ TEST(WorldFuzz, LinesOfSightHideNothingThatIsSeen) {
       }
     }
   }
-  EXPECT_GT(hidden, 200u);
+  EXPECT_GT(hidden, test::rounds(200u));
 }
 
 TEST(WorldFuzz, AnInstanceThatIsReplacedKeepsItsIdAndIsAnother) {

@@ -6,53 +6,29 @@
 
 #include "sightline/world/world.h"
 #include "sightline/world/world_culler.h"
-#include "tests/support/square_view.h"
+#include "tests/world/world_story.h"
 
 namespace sightline {
 namespace {
 
-using Corners = std::vector<Vec3f>;
+using namespace world_story;
 
-void addQuad(Corners& corners, Vec3f a, Vec3f b, Vec3f c, Vec3f d) {
-  corners.insert(corners.end(), {a, b, c, a, c, d});
-}
-
-Corners unitPanel() {
-  Corners corners;
-  addQuad(corners, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
-  return corners;
-}
-
-Corners block(const Vec3f& low, const Vec3f& high) {
-  constexpr int kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  const auto corner = [&](int i) {
-    return Vec3f{(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z};
-  };
-  Corners corners;
-  for (const auto& face : kFaces) {
-    addQuad(corners, corner(face[0]), corner(face[1]), corner(face[2]), corner(face[3]));
+// A shape of these corners instead of those of a box of 1 m.
+Shape block(const Vec3f& low, const Vec3f& high) {
+  Shape shape = boxShape();
+  shape.settings.double_sided = true;
+  for (Vec3f& corner : shape.corners) {
+    corner = {corner.x > 0 ? high.x : low.x, corner.y > 0 ? high.y : low.y, corner.z > 0 ? high.z : low.z};
   }
-  return corners;
+  return shape;
 }
 
 struct Place {
   World world;
 
-  MeshId mesh(const Corners& corners) {
-    const MeshView view{.positions = corners.data(),
-                        .vertex_count = static_cast<std::uint32_t>(corners.size())};
-    MeshSettings settings;
-    settings.double_sided = true;
-    return world.addMesh(*makeMesh(view, settings));
-  }
+  MeshId mesh(const Shape& shape) { return addShape(world, shape); }
   InstanceId add(MeshId mesh, const Vec3d& size, const Vec3d& at) {
-    Mat4 m;
-    for (int axis = 0; axis < 3; ++axis) {
-      m(axis, axis) = size[axis];
-      m(axis, 3) = at[axis];
-    }
-    return world.add({.mesh = mesh, .world_from_mesh = m});
+    return world.add({.mesh = mesh, .world_from_mesh = boxAt(at, size)});
   }
   double join(const std::vector<InstanceId>& members) {
     WorldJoin join = world.prepareJoin(members);
@@ -71,9 +47,7 @@ struct Place {
 };
 
 View lookingAlong(const Vec3d& eye, double tan_half_fovy, double near, double far) {
-  View view;
-  view.eye = eye;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  View view = viewFrom(eye, {0, 0, -1});
   view.tan_half_fovy = tan_half_fovy;
   view.z_near = near;
   view.z_far = far;
@@ -82,7 +56,7 @@ View lookingAlong(const Vec3d& eye, double tan_half_fovy, double near, double fa
 
 TEST(WorldRounding, APosterCloseBeforeAWallThatIsRoundedTowardsTheEyeIsSeen) {
   Place place;
-  const MeshId panel = place.mesh(unitPanel());
+  const MeshId panel = place.mesh(panelShape(true));
   const InstanceId wall = place.add(panel, {40, 40, 1}, {-20, -20, -100.0018}),
                    far_away = place.add(panel, {4, 4, 1}, {-2, -2, -130000}),
                    poster = place.add(panel, {8, 8, 1}, {-4, -4, -100.0008});
@@ -95,9 +69,10 @@ TEST(WorldRounding, APosterCloseBeforeAWallThatIsRoundedTowardsTheEyeIsSeen) {
 TEST(WorldRounding, AMemberJustBesideTheViewMayBeRoundedIntoIt) {
   Place place;
   const double edge = -10.45 * 0x1p-10;
-  Corners side;
+  Shape side;
+  side.settings.double_sided = true;
   addQuad(side, {0, 0, 0}, {0, 0, -1}, {0, 1, -1}, {0, 1, 0});
-  const MeshId panel = place.mesh(unitPanel()), corridor = place.mesh(side);
+  const MeshId panel = place.mesh(panelShape(true)), corridor = place.mesh(side);
   const std::vector<InstanceId> members{place.add(panel, {edge + 20, 20, 1}, {-20, -10, -10}),
                                         place.add(corridor, {1, 20, 11990}, {-20, -10, -10}),
                                         place.add(panel, {24, 20, 1}, {-20, -10, -12000}),
@@ -114,7 +89,7 @@ TEST(WorldRounding, AJoinFarFromTheZeroOfTheWorldKnowsItsRounding) {
   Place place;
   const Vec3d base{0x1p44, 0, 0};
   place.world.setOrigin(base);
-  const MeshId panel = place.mesh(unitPanel());
+  const MeshId panel = place.mesh(panelShape(true));
   const std::vector<InstanceId> members{place.add(panel, {4.003, 2, 1}, base + Vec3d{-4, -1, -10}),
                                         place.add(panel, {4, 2, 1}, base + Vec3d{8, -1, -10})};
   const InstanceId crate = place.add(
@@ -128,7 +103,7 @@ TEST(WorldRounding, AJoinFarFromTheZeroOfTheWorldKnowsItsRounding) {
 
 TEST(MovingOrigin, ArrivesAlsoWhereItIsAskedForInEachFrame) {
   Place place;
-  const MeshId panel = place.mesh(unitPanel());
+  const MeshId panel = place.mesh(panelShape(true));
   for (int i = 0; i < 3000; ++i) {
     place.add(panel, {1, 1, 1}, {static_cast<double>(i), 0, 0});
   }
@@ -152,7 +127,7 @@ TEST(MovingOrigin, ArrivesAlsoWhereItIsAskedForInEachFrame) {
 
 TEST(MovingOrigin, SettingThePresentOneKeepsWhatIsUnderWay) {
   Place place;
-  const MeshId panel = place.mesh(unitPanel());
+  const MeshId panel = place.mesh(panelShape(true));
   for (int i = 0; i < 3000; ++i) {
     place.add(panel, {1, 1, 1}, {static_cast<double>(i), 0, 0});
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/culling/fake_sets.h"
+#include "tests/support/rounds.h"
 #include "tests/world/world_story.h"
 
 namespace sightline {
@@ -41,7 +42,7 @@ std::size_t countOf(const std::vector<bool>& members) {
 
 TEST(WorldSets, HoldUntilSomethingInThemGoes) {
   std::size_t holding = 0, void_ones = 0;
-  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(30u); ++seed) {
     Chance chance(seed);
     Baked baked(chance, 40);
     fake_sets::FakeSets sets(baked.boxes);
@@ -86,8 +87,8 @@ TEST(WorldSets, HoldUntilSomethingInThemGoes) {
       baked.ids[object] = InstanceId();
     }
   }
-  EXPECT_GT(holding, 100u);
-  EXPECT_GT(void_ones, 100u);
+  EXPECT_GT(holding, test::rounds(100u));
+  EXPECT_GT(void_ones, test::rounds(100u));
 }
 
 TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
@@ -172,11 +173,7 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
     std::vector<Instance> cell;
     for (const InstanceId id : baked.ids) {
       const Told& told = baked.story.told.at(id.value);
-      Mat4 m = told.world_from_mesh;
-      for (int axis = 0; axis < 3; ++axis) {
-        m(axis, 3) += place[axis];
-      }
-      cell.push_back({.mesh = meshes[told.shape], .world_from_mesh = m});
+      cell.push_back({.mesh = meshes[told.shape], .world_from_mesh = movedBy(told.world_from_mesh, place)});
     }
     world.add(cell, ids);
     const SetsId id = world.useSets(ids, sets.boxes(), place);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <random>
 #include <string>
@@ -81,42 +82,24 @@ inline MeshId addShape(World& world, const Shape& shape) {
   return world.addMesh(*makeMesh(view, shape.settings));
 }
 
+// The matrix of what is put elsewhere by a vector.
+inline Mat4 movedBy(Mat4 world_from_mesh, const Vec3d& by) {
+  for (int axis = 0; axis < 3; ++axis) {
+    world_from_mesh(axis, 3) += by[axis];
+  }
+  return world_from_mesh;
+}
+
 struct Told {
   std::size_t shape = 0;
   Mat4 world_from_mesh;
   bool shown = true;
 };
 
-// The world and, beside it, what is there by InstanceId.
-struct Story {
-  World world;
+// What is there by InstanceId, to be judged as triangles.
+struct ToldScene {
   std::vector<Shape> shapes;
-  std::vector<MeshId> meshes;
-  std::map<std::uint32_t, Told> told;
-
-  explicit Story(std::vector<Shape> given) : shapes(std::move(given)) {
-    for (const Shape& shape : shapes) {
-      meshes.push_back(addShape(world, shape));
-    }
-  }
-  InstanceId add(std::size_t shape, const Mat4& m, bool shown = true) {
-    const InstanceId id = world.add(
-        {.mesh = meshes[shape], .world_from_mesh = m, .shown = shown, .moves = world.idBound() % 3 == 0});
-    told[id.value] = {shape, m, shown};
-    return id;
-  }
-  void remove(InstanceId id) {
-    world.remove(id);
-    told.erase(id.value);
-  }
-  void move(InstanceId id, const Mat4& m) {
-    world.setTransform(id, m);
-    told.at(id.value).world_from_mesh = m;
-  }
-  void show(InstanceId id, bool shown) {
-    world.setShown(id, shown);
-    told.at(id.value).shown = shown;
-  }
+  std::map<std::uint32_t, Told> told{};
 
   // All that is shown, exactly if points of meshes and matrices have few binary digits. ids: by ObjectId.
   Scene scene(std::vector<InstanceId>& ids) const {
@@ -148,42 +131,87 @@ struct Story {
   }
 };
 
+// A world that is told while it changes.
+struct Story : ToldScene {
+  World world;
+  std::vector<MeshId> meshes;  // by shape
+
+  explicit Story(std::vector<Shape> given) : ToldScene{std::move(given)} {
+    for (const Shape& shape : shapes) {
+      meshes.push_back(addShape(world, shape));
+    }
+  }
+  InstanceId add(std::size_t shape, const Mat4& m, bool shown = true) {
+    const InstanceId id = world.add(
+        {.mesh = meshes[shape], .world_from_mesh = m, .shown = shown, .moves = world.idBound() % 3 == 0});
+    told[id.value] = {shape, m, shown};
+    return id;
+  }
+  void remove(InstanceId id) {
+    world.remove(id);
+    told.erase(id.value);
+  }
+  void move(InstanceId id, const Mat4& m) {
+    world.setTransform(id, m);
+    told.at(id.value).world_from_mesh = m;
+  }
+  void show(InstanceId id, bool shown) {
+    world.setShown(id, shown);
+    told.at(id.value).shown = shown;
+  }
+};
+
 inline bool keeps(const WorldCuller& culler, InstanceId id) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
 }
 
 struct Judged {
-  std::size_t seen = 0, culled = 0;
-  std::string wrong;  // what was culled and is not proved hidden; empty: nothing
+  std::size_t culled = 0;  // by the first culler
+  std::string wrong;       // what was culled and is not proved hidden; empty: nothing
 };
 
-// Proves in exact arithmetic that whatever is shown and was left out is hidden.
-inline Judged judge(const Story& story, const View& view, const WorldCuller& culler) {
+// Proves in exact arithmetic that whatever is shown and was left out by any of the cullers, all of one view,
+// is hidden.
+inline Judged judge(const ToldScene& told, const View& view,
+                    std::initializer_list<const WorldCuller*> cullers) {
   std::vector<InstanceId> ids;
-  const Scene scene = story.scene(ids);
+  const Scene scene = told.scene(ids);
   const ExactVisibility exact(scene.view());
   std::vector<ObjectId> left_out;
   Judged judged;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const std::uint32_t id = ids[i].value;
-    const bool kept = (culler.visibleBits()[id / 64] >> (id % 64) & 1) != 0;
-    if (kept != keeps(culler, ids[i]) || kept != culler.isVisible(ids[i])) {
-      judged.wrong += "the bit of instance " + std::to_string(id) + " is not what the list says; ";
+    bool all_keep = true;
+    for (const WorldCuller* culler : cullers) {
+      const bool kept = (culler->visibleBits()[id / 64] >> (id % 64) & 1) != 0;
+      if (kept != keeps(*culler, ids[i]) || kept != culler->isVisible(ids[i])) {
+        judged.wrong += "the bit of instance " + std::to_string(id) + " is not what the list says; ";
+      }
+      all_keep = all_keep && kept;
+      judged.culled += !kept && culler == *cullers.begin() ? 1 : 0;
     }
-    if (!kept) {
+    if (!all_keep) {
       left_out.emplace_back(i);
     }
   }
-  judged.seen = exact.visibleThroughPixels(view, 64, 36).size();
-  judged.culled = left_out.size();
   const std::vector<Decision> decisions = exact.decide(view, left_out, 20'000);
   for (std::size_t i = 0; i < left_out.size(); ++i) {
-    if (decisions[i].verdict != Verdict::kHidden) {
-      judged.wrong += "instance " + std::to_string(ids[left_out[i].value].value) +
-                      (decisions[i].verdict == Verdict::kVisible ? " can be seen; " : " is undecided; ");
+    if (decisions[i].verdict == Verdict::kHidden) {
+      continue;
     }
+    const InstanceId id = ids[left_out[i].value];
+    judged.wrong += "instance " + std::to_string(id.value) +
+                    (decisions[i].verdict == Verdict::kVisible ? " can be seen" : " is undecided");
+    for (std::size_t c = 0; c < cullers.size(); ++c) {
+      judged.wrong += keeps(*cullers.begin()[c], id) ? "" : ", left out by culler " + std::to_string(c);
+    }
+    judged.wrong += "; ";
   }
   return judged;
+}
+
+inline Judged judge(const ToldScene& told, const View& view, const WorldCuller& culler) {
+  return judge(told, view, {&culler});
 }
 
 // Numbers and placements of few binary digits.
