@@ -13,7 +13,9 @@
 namespace sightline::geometry {
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
+// Without expression templates, which take long to compile.
+using Rational = boost::multiprecision::number<boost::multiprecision::cpp_rational::backend_type,
+                                               boost::multiprecision::et_off>;
 
 struct RationalVec {
   Rational x, y, z;

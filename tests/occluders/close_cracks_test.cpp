@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <limits>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "tests/occluders/triangle_soup.h"
+#include "tests/support/cut_work.h"
 
 namespace sightline::occluders {
 namespace {
@@ -20,12 +20,6 @@ using test::boundaryEdges;
 using test::greedyVoxels;
 using test::Soup;
 using test::SoupRandom;
-
-void onTwoThreads(std::uint32_t count, const RangeBody& body) {
-  std::thread other([&] { body(count / 2, count); });
-  body(0, count / 2);
-  other.join();
-}
 
 // Every triangle with corners of its own, moved by less than `by` along each axis.
 Soup shaken(const Soup& soup, double by, unsigned seed) {
@@ -188,7 +182,7 @@ TEST(CloseCracks, ThreadsChangeNothingAndOddCoordinatesStay) {
   soup.add({nan, 0, 0}, {1, 0, 0}, {0, 1, 0});
   soup.add({0x1p70, 0, 0}, {1.00001, 0, 0}, {0, 1, 0});
   const ClosedCracks one = closeCracks(soup.input(), 0.001),
-                     two = closeCracks(soup.input(), 0.001, onTwoThreads);
+                     two = closeCracks(soup.input(), 0.001, onThreads(2));
   EXPECT_EQ(one.triangles, two.triangles);
   EXPECT_EQ(one.source, two.source);
   EXPECT_EQ(one.slack, two.slack);

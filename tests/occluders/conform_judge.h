@@ -19,7 +19,9 @@
 
 namespace sightline::test {
 
-using Rational = boost::multiprecision::cpp_rational;
+// Without expression templates, which take long to compile.
+using Rational = boost::multiprecision::number<boost::multiprecision::cpp_rational::backend_type,
+                                               boost::multiprecision::et_off>;
 
 struct RationalVec {
   Rational x, y, z;
@@ -249,13 +251,13 @@ class ConformJudge {
     }
     for (const std::size_t piece : pieces) {
       const RationalTriangle t = triangleOf(pieceOf(piece));
-      const RationalVec normal = areaOf(t);
+      const Normal normal(areaOf(t));
       const Bounds bounds = boundsOf(pieceOf(piece));
       const RoundedPlane plane(mesh_, pieceOf(piece));
       for (const std::uint32_t v : used) {
         const std::array<std::uint32_t, 1> one{v};
         if (!isCorner(piece, v) && bounds.meets(boundsOf(one)) && plane.sideOf(mesh_.vertices[v]) == 0) {
-          EXPECT_FALSE(dot(normal, exact_[v] - t[0]) == 0 && inside(t, normal, exact_[v]))
+          EXPECT_FALSE(dot(normal.exact, exact_[v] - t[0]) == 0 && inside(t, normal.exact, exact_[v]))
               << "vertex " << v << " in piece " << piece;
         }
       }
@@ -268,6 +270,13 @@ class ConformJudge {
       }
     }
   }
+
+  struct Normal {
+    explicit Normal(const RationalVec& n)
+        : exact(n), rounded(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)) {}
+    RationalVec exact;
+    Vec3d rounded;
+  };
 
   // Spares rational numbers where rounded ones leave no doubt.
   struct RoundedPlane {
@@ -302,11 +311,11 @@ class ConformJudge {
     return true;
   }
   // An edge passes through a face or, in its plane, across one of its edges.
-  bool crosses(std::size_t piece, const RationalTriangle& t, const RationalVec& normal, std::uint32_t a,
+  bool crosses(std::size_t piece, const RationalTriangle& t, const Normal& normal, std::uint32_t a,
                std::uint32_t b) const {
-    const Rational from = dot(normal, exact_[a] - t[0]), to = dot(normal, exact_[b] - t[0]);
+    const Rational from = dot(normal.exact, exact_[a] - t[0]), to = dot(normal.exact, exact_[b] - t[0]);
     if (from.sign() * to.sign() < 0) {
-      return inside(t, normal, exact_[a] + (exact_[b] - exact_[a]) * (from / (from - to)));
+      return inside(t, normal.exact, exact_[a] + (exact_[b] - exact_[a]) * (from / (from - to)));
     }
     if (from != 0 || to != 0) {
       return false;
@@ -323,9 +332,8 @@ class ConformJudge {
   }
 
   // Whether r lies to the left of the line from p to q in the plane of a normal.
-  int side(const RationalVec& normal, std::uint32_t p, std::uint32_t q, std::uint32_t r) const {
-    const Vec3d at = mesh_.vertices[p], n(static_cast<double>(normal.x), static_cast<double>(normal.y),
-                                          static_cast<double>(normal.z));
+  int side(const Normal& normal, std::uint32_t p, std::uint32_t q, std::uint32_t r) const {
+    const Vec3d at = mesh_.vertices[p], n = normal.rounded;
     const Vec3d along = mesh_.vertices[q] - at, to = mesh_.vertices[r] - at;
     const double rounded = sightline::dot(n, sightline::cross(along, to));
     const double far = std::max(maxComponent(abs(along)), maxComponent(abs(to)));
@@ -333,7 +341,7 @@ class ConformJudge {
     if (std::abs(rounded) > doubt) {
       return rounded > 0.0 ? 1 : -1;
     }
-    return dot(normal, cross(exact_[q] - exact_[p], exact_[r] - exact_[p])).sign();
+    return dot(normal.exact, cross(exact_[q] - exact_[p], exact_[r] - exact_[p])).sign();
   }
 
   const Soup& soup_;

@@ -130,7 +130,7 @@ class Conforming {
   void splitTriangles() {
     pieces_.resize((touched_.size() + kSplitsOfPart - 1) / kSplitsOfPart);
     base::forEach(parallel_for_, pieces_.size(), [&](std::uint32_t part) {
-      TriangleSplit split;
+      TriangleSplit split(settings_.most_contacts);
       const std::size_t end = std::min<std::size_t>(touched_.size(), (part + std::size_t{1}) * kSplitsOfPart);
       for (std::size_t i = part * std::size_t{kSplitsOfPart}; i < end; ++i) {
         split.split(scene_, touched_[i], contacts_[i], pieces_[part]);

@@ -3,6 +3,7 @@
 // Makes triangles that touch share edges: wherever two triangles meet, both are divided so that they meet in
 // common vertices and common edges, or lie on each other as equal pieces. All decisions are exact.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,6 +36,9 @@ struct ConformSettings {
   // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
   // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
   double crack_width = 0.0;
+  // Where a triangle has more contacts than this and segments among them, or its segments cross each other
+  // more often, only its borders are divided: that is more than is worth the memory.
+  std::size_t most_contacts = 65536;
 };
 
 // A point by what defines it: vertices and triangles of the input, or triangles that closeCracks() made of
@@ -73,9 +77,7 @@ struct ConformedMesh {
   std::uint32_t degenerate = 0;  // triangles without area, which are left out
   std::uint32_t untouched = 0;   // triangles passed on without a look at their contacts: see conform()
   std::uint32_t divided = 0;     // triangles of the input that have several pieces, or new vertices
-  // Triangles of these that more segments cross, or in which segments cross each other more often, than is
-  // worth the memory (65,536 times). Only their borders are divided.
-  std::uint32_t overfull = 0;
+  std::uint32_t overfull = 0;    // triangles of these of which only the borders are divided: most_contacts
   ContactCounts contacts;
 };
 

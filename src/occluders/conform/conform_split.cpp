@@ -9,13 +9,6 @@ namespace sightline::occluders {
 
 using geometry::ExactPoint;
 
-namespace {
-
-constexpr std::size_t kMostContacts =
-    65536;  // contacts of a triangle with segments among them, and crossings of these
-
-}  // namespace
-
 ExactPoint exactPoint(const ConformScene& scene, const PointName& name) {
   const auto vertex = [&](int k) { return scene.vertices[name.of[k]]; };
   switch (name.kind) {
@@ -63,7 +56,7 @@ void TriangleSplit::split(const ConformScene& scene, std::uint32_t triangle,
 
 // Finds the points and segments of a triangle; false if it is overfull.
 bool TriangleSplit::arrange(std::span<const Contact> contacts) {
-  if (contacts.size() > kMostContacts) {
+  if (contacts.size() > most_contacts_) {
     const auto segment = [](const Contact& contact) { return contact.kind != Contact::Kind::kPoint; };
     if (std::any_of(contacts.begin(), contacts.end(), segment)) {
       return false;
@@ -204,7 +197,7 @@ bool TriangleSplit::crossSegments() {
           turn(b.low, b.high, a.low) * turn(b.low, b.high, a.high) >= 0) {
         continue;
       }
-      if (crossings_.size() >= 2 * kMostContacts) {
+      if (crossings_.size() >= 2 * most_contacts_) {
         return false;
       }
       crossings_.push_back({i, static_cast<std::uint32_t>(names_.size())});

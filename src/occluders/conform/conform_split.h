@@ -2,6 +2,7 @@
 
 // Divides one triangle along what it has in common with others.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,6 +35,9 @@ geometry::ExactPoint exactPoint(const ConformScene& scene, const PointName& name
 // Divides triangles one at a time; keeps its storage.
 class TriangleSplit {
  public:
+  // most_contacts: see ConformSettings.
+  explicit TriangleSplit(std::size_t most_contacts) : most_contacts_(most_contacts) {}
+
   // Appends the pieces of a triangle with area. contacts: all of its contacts, in any order. The pieces do
   // not depend on that order.
   void split(const ConformScene& scene, std::uint32_t triangle, std::span<const Contact> contacts,
@@ -66,6 +70,7 @@ class TriangleSplit {
   const geometry::ExactPoint& point(std::uint32_t rank) const { return points_[place_of_rank_[rank]]; }
   Borders bordersOf(std::uint32_t rank) const { return borders_of_rank_[rank]; }
 
+  std::size_t most_contacts_;
   const ConformScene* scene_ = nullptr;
   std::vector<Contact> on_borders_;
   std::uint32_t triangle_ = 0;
