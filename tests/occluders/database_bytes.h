@@ -105,13 +105,6 @@ void askEverything(const Database& database, std::uint32_t occluders, Random& ra
   }
 }
 
-// Calls the body for ranges of three, the last one first.
-inline void backwards(std::uint32_t count, const RangeBody& body) {
-  for (std::uint32_t piece = (count + 2) / 3; piece-- > 0;) {
-    body(piece * 3, std::min(count, piece * 3 + 3));
-  }
-}
-
 template <typename Database>
 void expectSame(const Database& a, const Database& b, const Box& box) {
   ASSERT_EQ(placeCount(a), placeCount(b));

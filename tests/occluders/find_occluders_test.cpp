@@ -7,6 +7,7 @@
 #include "scenes/procedural.h"
 #include "tests/occluders/flat_mesh.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -657,7 +658,7 @@ TEST(MakeOccluders, MakesSharedEdgesOfEqualEndsWatertight) {
 TEST(MakeOccluders, NeverCoversMoreThanTheCallersPolygon) {
   // Random loops, most of them neither convex nor simple: what is accepted is what was given, and convex.
   int accepted = 0;
-  for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(20000u); ++seed) {
     Random random(seed);
     const Placement place = anyPlacement(random, 5.0);
     std::vector<Vec3f> loop;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -193,7 +194,7 @@ TEST(MergedPolygons, CoverExactlyTheirTrianglesAndNeverAHole) {
   int decided = 0;
   for (const Family family : kFamilies) {
     for (const double distance : {0.0, 100.0, 5000.0}) {
-      for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      for (std::uint64_t seed = 1; seed <= test::rounds(40u); ++seed) {
         Random random(seed);
         const FlatMesh mesh = meshOf(family, random);
         const Placement place =
@@ -216,7 +217,7 @@ TEST(MergedPolygons, CoverExactlyTheirTrianglesAndNeverAHole) {
       }
     }
   }
-  EXPECT_GT(decided, 100000);
+  EXPECT_GT(decided, test::rounds(100000));
 }
 
 TEST(MergedPolygons, HaveTheAreaOfTheirTriangles) {
@@ -224,7 +225,7 @@ TEST(MergedPolygons, HaveTheAreaOfTheirTriangles) {
     if (family == Family::kLooseEnds) {
       continue;
     }
-    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    for (std::uint64_t seed = 1; seed <= test::rounds(40u); ++seed) {
       Random random(seed);
       const FlatMesh mesh = meshOf(family, random);
       const Placement place = anyPlacement(random, 30.0);
@@ -246,7 +247,7 @@ TEST(MergedPolygons, HaveTheAreaOfTheirTriangles) {
 
 TEST(MergedPolygons, HonourTheVertexLimitAndStillCoverEverything) {
   for (const Family family : {Family::kDisc, Family::kFan, Family::kHoles}) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (std::uint64_t seed = 1; seed <= test::rounds(20u); ++seed) {
       for (const std::uint32_t limit : {3u, 4u, 5u, 8u, 16u}) {
         Random random(seed);
         const FlatMesh mesh = meshOf(family, random);
@@ -277,7 +278,7 @@ double distanceBeyond(std::span<const Point2> polygon, const Point2& p) {
 
 TEST(MergedPolygons, StateASlackThatBoundsTheDistanceFromTheirTriangles) {
   for (const Family family : kFamilies) {
-    for (std::uint64_t seed = 1; seed <= 40 && family != Family::kLooseEnds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= test::rounds(40u) && family != Family::kLooseEnds; ++seed) {
       Random random(seed);
       const double distance = seed % 2 == 0 ? 20.0 : 3000.0;
       const Placement place = anyPlacement(random, distance);
@@ -377,7 +378,7 @@ TEST(MergedPolygons, OfALongWallIsOne) {
 
 TEST(MergedPolygons, OfOneMeshCannotBeMergedAnyFurther) {
   // No two of them share a whole side and are convex together.
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(40u); ++seed) {
     Random random(seed);
     const FlatMesh mesh = meshOf(seed % 2 == 0 ? Family::kHoles : Family::kFan, random);
     const OccluderSet set = findOccluders(sceneOf(mesh).view(), kKeepAll);

@@ -7,10 +7,10 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <thread>
 
 #include "scenes/procedural.h"
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/cut_work.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -205,7 +205,7 @@ bool sameDatabase(const OccluderDatabase& a, const OccluderDatabase& b) {
 
 TEST(OccluderDatabase, ListsHoldTheBestOfAllOccluders) {
   std::size_t full = 0, partly = 0;
-  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(24u); ++seed) {
     Random random(seed);
     const Model model = crowd(random, 20 + random.below(250), seed % 3 == 0 ? 200.0 : 30.0);
     for (const AreaAngleDirection area_angle : kAreaAngles) {
@@ -228,8 +228,8 @@ TEST(OccluderDatabase, ListsHoldTheBestOfAllOccluders) {
       }
     }
   }
-  EXPECT_GT(full, 100u);
-  EXPECT_GT(partly, 100u);
+  EXPECT_GT(full, test::rounds(100u));
+  EXPECT_GT(partly, test::rounds(100u));
 }
 
 TEST(OccluderDatabase, ListsHoldTheBestOfAllOccludersOfDemoScenes) {
@@ -603,24 +603,9 @@ TEST(OccluderDatabase, IsTheSameForAllThreadsAndCuts) {
     };
     EXPECT_TRUE(sameWith(serialFor));
     for (const std::uint32_t step : {1u, 7u, 100u}) {
-      EXPECT_TRUE(sameWith([step](std::uint32_t count, const RangeBody& body) {
-        for (std::uint32_t end = count; end > 0;) {
-          const std::uint32_t begin = end > step ? end - step : 0;
-          body(begin, end);
-          end = begin;
-        }
-      })) << "step "
-          << step;
+      EXPECT_TRUE(sameWith(backwardsBy(step))) << "step " << step;
     }
-    EXPECT_TRUE(sameWith([](std::uint32_t count, const RangeBody& body) {
-      std::vector<std::thread> running;
-      for (std::uint32_t t = 0; t < 4; ++t) {
-        running.emplace_back([&body, count, t] { body(count * t / 4, count * (t + 1) / 4); });
-      }
-      for (std::thread& thread : running) {
-        thread.join();
-      }
-    }));
+    EXPECT_TRUE(sameWith(onThreads(4)));
   }
 }
 

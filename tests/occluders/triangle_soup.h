@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "sightline/scene/scene.h"
 #include "src/occluders/conform/conform.h"
 
 namespace sightline::test {
@@ -168,6 +169,24 @@ inline Soup greedyVoxels(unsigned seed, int size) {
     }
   }
   return soup;
+}
+
+// A scene of a soup's triangles, whose coordinates must be of single precision, in so many opaque objects.
+inline Scene sceneOf(const Soup& soup, std::uint32_t objects = 1) {
+  Scene scene;
+  for (const Vec3d& v : soup.vertices) {
+    scene.positions.emplace_back(v);
+  }
+  scene.indices = soup.triangles;
+  scene.materials.push_back({.name = "plain"});
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    const std::uint32_t first = soup.count() * o / objects, end = soup.count() * (o + 1) / objects;
+    scene.objects.push_back(
+        {.first_index = 3 * first, .index_count = 3 * (end - first), .material = MaterialId(0u)});
+    scene.object_names.emplace_back("soup");
+  }
+  updateBounds(scene);
+  return scene;
 }
 
 }  // namespace sightline::test

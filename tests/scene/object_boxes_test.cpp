@@ -13,6 +13,8 @@
 
 #include "src/scene/like_objects.h"
 #include "tests/support/cut_off.h"
+#include "tests/support/cut_work.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -193,7 +195,7 @@ TEST(ObjectBoxes, KeepsToTheSettings) {
 
 TEST(ObjectBoxes, HoldAllOfRandomShapes) {
   std::size_t boxes = 0;
-  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(60u); ++seed) {
     std::mt19937 random(seed);
     Shapes shapes;
     // Sixteenths up to 64, and triangles of any size: points in steps of a sixteenth of a side are exact.
@@ -217,7 +219,7 @@ TEST(ObjectBoxes, HoldAllOfRandomShapes) {
     expectHeld(shapes, found);
     boxes += found.boxes.size();
   }
-  EXPECT_GT(boxes, 1000u);
+  EXPECT_GT(boxes, test::rounds(1000u));
 }
 
 // What of a polygon lies in no box: it is cut at the sides of one box after the other, each of which is wider
@@ -255,7 +257,7 @@ bool isCovered(std::vector<Vec3d> polygon, std::span<const Box> boxes, double sl
 
 TEST(ObjectBoxes, LeaveNoPartOfAMeshUncovered) {
   std::size_t boxes = 0;
-  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(120u); ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> at(-50.0f, 50.0f), turn(-1.0f, 1.0f);
     Shapes shapes;
@@ -295,12 +297,12 @@ TEST(ObjectBoxes, LeaveNoPartOfAMeshUncovered) {
     }
     boxes += found.boxes.size();
   }
-  EXPECT_GT(boxes, 1000u);
+  EXPECT_GT(boxes, test::rounds(1000u));
 }
 
 TEST(ObjectBoxes, LeaveNoPartOfASliverUncovered) {
   std::size_t boxes = 0;
-  for (std::uint32_t seed = 0; seed < 3000; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(3000u); ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> at(-50.0f, 50.0f), along(0.0f, 1.0f);
     Shapes shapes;
@@ -326,7 +328,7 @@ TEST(ObjectBoxes, LeaveNoPartOfASliverUncovered) {
     }
     boxes += of_object.size();
   }
-  EXPECT_GT(boxes, 10000u);
+  EXPECT_GT(boxes, test::rounds(10000u));
 }
 
 TEST(ObjectBoxes, EveryInstructionSetGivesTheSame) {
@@ -426,12 +428,7 @@ TEST(ObjectBoxes, DoNotDependOnTheThreads) {
     shapes.endObject();
   }
   const ObjectBoxes serial = findObjectBoxes(shapes.scene.view());
-  const ParallelFor backwards = [](std::uint32_t count, const RangeBody& body) {
-    for (std::uint32_t i = count; i-- > 0;) {
-      body(i, i + 1);
-    }
-  };
-  const ObjectBoxes other = findObjectBoxes(shapes.scene.view(), {}, backwards);
+  const ObjectBoxes other = findObjectBoxes(shapes.scene.view(), {}, backwardsBy(1));
   EXPECT_FALSE(serial.boxes.empty());
   EXPECT_EQ(serial.first, other.first);
   EXPECT_EQ(serial.boxes, other.boxes);
