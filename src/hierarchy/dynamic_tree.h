@@ -110,9 +110,8 @@ class DynamicTree {
     bool worn = false;        // listed in worn_
     double built_area = 0.0;  // surface area when it was built or split
   };
-  static constexpr std::uint32_t kFew = 4;  // children of a node after a split, at least
-  static constexpr std::uint32_t kMaxHeight =
-      16;  // kFew^16 is 2^32: more levels than any number of items needs
+  static constexpr std::uint32_t kFew = 4;         // children of a node after a split, at least
+  static constexpr std::uint32_t kMaxHeight = 16;  // kFew^16 is 2^32: no number of items needs more levels
 
   // Parts of scratch_ that are to be divided among so many new children of a node; none: all of the node's
   // children are there and have been filled.
