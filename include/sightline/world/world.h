@@ -140,8 +140,8 @@ class World {
   // it. Positions are rounded to single precision, relative to the middle of the join
   // (WorldJoin::rounding), and touch where they are equal then. Where rounding could be seen
   // (WorldCullerSettings::join_rounding), members hide by their own meshes. One that moves, is hidden or is
-  // removed later leaves the join; what was connected with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
-  // culled but not changed; use() takes microseconds.
+  // removed later leaves the join; what was connected with it then hides by its own mesh, too. Takes as long
+  // as findSurfaces(), during which the world may be culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor) const;
   // Instances that have changed since prepareJoin() leave the join at once.
