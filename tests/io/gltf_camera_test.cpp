@@ -22,6 +22,10 @@ json perspective() {
       {"perspective", {{"yfov", std::numbers::pi / 2}, {"znear", 0.5}, {"zfar", 100}, {"aspectRatio", 2}}}};
 }
 
+json orthographic() {
+  return {{"type", "orthographic"}, {"orthographic", {{"xmag", 6}, {"ymag", 3}, {"znear", 0}, {"zfar", 50}}}};
+}
+
 // Node 0 carries the camera and hangs below node 1, the root.
 Glb oneCamera(const json& camera) {
   Glb glb;
@@ -84,8 +88,7 @@ TEST(GltfCamera, AnEndlessCameraReachesTheWholeScene) {
 }
 
 TEST(GltfCamera, AnOrthographicCameraKeepsItsHeight) {
-  Glb glb = oneCamera(
-      {{"type", "orthographic"}, {"orthographic", {{"xmag", 6}, {"ymag", 3}, {"znear", 0}, {"zfar", 50}}}});
+  Glb glb = oneCamera(orthographic());
   const CameraPath path = imported(glb.bytes()).paths.at(0);
   EXPECT_EQ(path.ortho_height, 6.0);
   EXPECT_EQ(path.width, 2 * path.height);
@@ -93,6 +96,16 @@ TEST(GltfCamera, AnOrthographicCameraKeepsItsHeight) {
   EXPECT_GT(path.z_near, 0.0);
   EXPECT_NEAR(path.frames.at(0).eye.z - path.z_near, 0.0, 1e-12);
   EXPECT_NEAR(path.frames.at(0).eye.z - path.z_far, -50.0, 1e-12);
+}
+
+TEST(GltfCamera, APerspectiveCameraAfterAnOrthographicOneStandsAtItsNode) {
+  Glb glb = oneCamera(orthographic());
+  glb.json["cameras"].push_back(perspective());
+  glb.json["scenes"][0]["nodes"].push_back(glb.addNode({{"camera", 1}, {"translation", {1, 2, 3}}}));
+  const Scene scene = imported(glb.bytes());
+  ASSERT_EQ(scene.paths.size(), 2u);
+  ASSERT_GT(scene.paths[0].frames.at(0).eye.z, 0.0) << "the orthographic camera steps back";
+  expectNear(scene.paths[1].frames.at(0).eye, {1, 2, 3}, 1e-12);
 }
 
 TEST(GltfCamera, AnAnimatedAncestorMovesTheCamera) {

@@ -59,10 +59,11 @@ class CameraAdder {
     path.name = !node.name.empty()     ? node.name
                 : !camera.name.empty() ? camera.name
                                        : fmt::format("camera{}", node.camera);
-    Status status = camera.type == "orthographic" ? orthographic(*camera.orthographic, path)
+    double step_back = 0.0;
+    Status status = camera.type == "orthographic" ? orthographic(*camera.orthographic, path, step_back)
                                                   : perspective(*camera.perspective, path);
     if (status) {
-      status = addFrames(node_number, path);
+      status = addFrames(node_number, step_back, path);
     }
     if (!status) {
       return status.error();
@@ -84,7 +85,8 @@ class CameraAdder {
     return setSize(camera.aspect_ratio == 0.0 ? 16.0 / 9.0 : camera.aspect_ratio, path);
   }
 
-  Status orthographic(const GltfFile::Orthographic& camera, CameraPath& path) {
+  // Sets how far behind its node the eye stands, in metres.
+  Status orthographic(const GltfFile::Orthographic& camera, CameraPath& path, double& step_back) const {
     if (!(camera.xmag > 0.0 && camera.ymag > 0.0)) {
       return failure("{}: xmag {} and ymag {} are not positive", where_, camera.xmag, camera.ymag);
     }
@@ -93,9 +95,9 @@ class CameraAdder {
     }
     path.ortho_height = 2.0 * camera.ymag;
     // Ours needs near > 0: the eye steps back, which changes nothing of an orthographic picture.
-    step_back_ = camera.znear > 0.0 ? 0.0 : 0.1;
-    path.z_near = camera.znear + step_back_;
-    path.z_far = camera.zfar + step_back_;
+    step_back = camera.znear > 0.0 ? 0.0 : 0.1;
+    path.z_near = camera.znear + step_back;
+    path.z_far = camera.zfar + step_back;
     return setSize(camera.xmag / camera.ymag, path);
   }
 
@@ -109,9 +111,9 @@ class CameraAdder {
     return Success{};
   }
 
-  Status addFrames(std::size_t node, CameraPath& path) {
+  Status addFrames(std::size_t node, double step_back, CameraPath& path) {
     if (channels_.empty()) {
-      return addFrame(tree_.world_from_node[node], path);
+      return addFrame(tree_.world_from_node[node], step_back, path);
     }
     Result<std::vector<Link>> chain = chainOf(static_cast<int>(node));
     if (!chain) {
@@ -130,7 +132,7 @@ class CameraAdder {
       }
     }
     if (animated == 0) {
-      return addFrame(tree_.world_from_node[node], path);
+      return addFrame(tree_.world_from_node[node], step_back, path);
     }
     const double count = std::floor((end - start) * kFramesPerSecond + 1e-3) + 1.0;
     if (!(count * static_cast<double>(chain->size()) < 1e15) ||
@@ -142,7 +144,7 @@ class CameraAdder {
       for (auto link = chain->rbegin(); link != chain->rend(); ++link) {
         world_from_node = world_from_node * link->at(start + i / kFramesPerSecond);
       }
-      const Status status = addFrame(world_from_node, path);
+      const Status status = addFrame(world_from_node, step_back, path);
       if (!status) {
         return status;
       }
@@ -205,12 +207,12 @@ class CameraAdder {
     return Success{};
   }
 
-  Status addFrame(const Mat4& world_from_node, CameraPath& path) const {
+  Status addFrame(const Mat4& world_from_node, double step_back, CameraPath& path) const {
     CameraFrame frame;
     frame.forward = normalized(-Vec3d(world_from_node(0, 2), world_from_node(1, 2), world_from_node(2, 2)));
     frame.up = normalized(Vec3d(world_from_node(0, 1), world_from_node(1, 1), world_from_node(2, 1)));
     frame.eye = Vec3d(world_from_node(0, 3), world_from_node(1, 3), world_from_node(2, 3)) -
-                frame.forward * step_back_;
+                frame.forward * step_back;
     if (!SceneBuilder::inRange(frame.eye) || !isFinite(frame.up) ||
         !(std::abs(length(frame.forward) - 1.0) < 1e-6)) {
       return failure("{}: frame {}: its position or direction is not usable", where_, path.frames.size());
@@ -236,7 +238,6 @@ class CameraAdder {
   Accessors& accessors_;
   std::uint64_t work_left_;
   std::string where_;
-  double step_back_ = 0.0;
 };
 
 }  // namespace
