@@ -103,7 +103,8 @@ bool readAll(int descriptor, steady_clock::time_point until, std::vector<std::by
     };
     const int events =
         ::poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 1'000'000)));
-    if (events < 0 && errno == EINTR) {
+    // One poll waits for 1000 s at most, which may be less than what is left.
+    if ((events < 0 && errno == EINTR) || (events == 0 && steady_clock::now() < until)) {
       continue;
     }
     if (events <= 0) {

@@ -43,7 +43,7 @@ Result<Scene> importScene(const std::string& file) {
     }
   }
   const std::uint64_t file_bytes = bytes->size();
-  *bytes = {};  // Assimp reads the file itself, with the others that it names
+  std::string().swap(*bytes);  // frees it: Assimp reads the file itself, with the others that it names
   return importAssimpInChild(file, file_bytes, ImportLimits{});
 }
 

@@ -75,7 +75,7 @@ Scene SceneBuilder::finish() {
     for (const Vec3d& position : positions_world_) {
       scene_.positions.push_back(Vec3f(position - scene_.origin));
     }
-    positions_world_ = {};
+    std::vector<Vec3d>().swap(positions_world_);  // frees it, which no assignment of {} does
     for (CameraPath& path : scene_.paths) {
       if (path.z_far == 0.0) {
         setUnstatedFarPlane(path, bounds);
