@@ -117,12 +117,10 @@ class ByteStream : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-// A layer as OpenEXR takes it: it knows no empty rectangles, so a transparent layer has one pixel.
-FileLayer notEmpty(const FileLayer& layer) {
-  return {.name = layer.name, .width = 1, .height = 1, .rgba = {0, 0, 0, 0}};
-}
-bool isEmpty(const FileLayer& layer) {
-  return layer.rgba.empty();
+// A layer's pixels as OpenEXR takes them: it knows no empty rectangles, so a transparent layer has one pixel.
+const FileLayer& pixelsOf(const FileLayer& layer) {
+  static const FileLayer kOnePixel{.width = 1, .height = 1, .rgba = {0, 0, 0, 0}};
+  return layer.rgba.empty() ? kOnePixel : layer;
 }
 
 Imath::Box2i windowOf(const FileLayer& layer) {
@@ -133,7 +131,7 @@ Imath::Box2i windowOf(const FileLayer& layer) {
 
 Imf::Header headerOf(const FileLayer& layer, std::uint32_t width, std::uint32_t height) {
   const Imath::Box2i whole({0, 0}, {static_cast<int>(width) - 1, static_cast<int>(height) - 1});
-  Imf::Header header(whole, windowOf(layer));
+  Imf::Header header(whole, windowOf(pixelsOf(layer)));
   header.compression() = Imf::ZIP_COMPRESSION;
   header.setName(layer.name);
   header.setType(Imf::SCANLINEIMAGE);
@@ -146,7 +144,8 @@ Imf::Header headerOf(const FileLayer& layer, std::uint32_t width, std::uint32_t 
   return header;
 }
 
-void writePart(Imf::MultiPartOutputFile& output, int part, const FileLayer& layer) {
+void writePart(Imf::MultiPartOutputFile& output, int part, const FileLayer& asked) {
+  const FileLayer& layer = pixelsOf(asked);
   Imf::OutputPart out(output, part);
   const Imath::Box2i window = windowOf(layer);
   Imf::FrameBuffer buffer;
@@ -174,12 +173,12 @@ Status writeLayerFile(const std::string& file, std::uint32_t width, std::uint32_
   try {
     std::vector<Imf::Header> headers;
     for (const FileLayer& layer : layers) {
-      headers.push_back(headerOf(isEmpty(layer) ? notEmpty(layer) : layer, width, height));
+      headers.push_back(headerOf(layer, width, height));
     }
     headers.front().insert("sightline", Imf::StringAttribute(description));
     Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
     for (std::size_t i = 0; i < layers.size(); ++i) {
-      writePart(output, static_cast<int>(i), isEmpty(layers[i]) ? notEmpty(layers[i]) : layers[i]);
+      writePart(output, static_cast<int>(i), layers[i]);
     }
   } catch (const std::exception& error) {
     return failure("{}: cannot be written as OpenEXR: {}", file, error.what());
