@@ -47,6 +47,19 @@ TEST(Interrupted, CommandsSayThatNothingWasWritten) {
   }
 }
 
+TEST(Interrupted, CommandsNameWhatWasWrittenBefore) {
+  const TemporaryFolder folder;
+  const std::string prepared = folder.file("prepared");
+  Started tool(toolWords(0, {"verify", "demo:city?copies=1", "--method", "depth-pyramid", "--prepared",
+                             prepared, "--json", folder.file("result.json")}));
+  ASSERT_TRUE(waitForFile(tool, prepared));
+  tool.kill(SIGINT);
+  const Outcome outcome = tool.wait();
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_EQ(outcome.err, "sightline: verify was interrupted; written so far: " + prepared + "\n");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(Interrupted, FoldersThatWereMadeAndAreEmptyAreRemoved) {
   const TemporaryFolder folder;
   Started tool(toolWords(0, {"reproduce", "coorg-teller", "-o", folder.file("new/report")}));

@@ -29,11 +29,16 @@ Status writeOutput(const std::string& target, const std::string& text) {
   }
   const SignalGuard guard;
   if (target != "-") {
-    return writeFile(target, text + "\n");
+    const Status written = writeFile(target, text + "\n");
+    if (written) {
+      noteWritten(target);
+    }
+    return written;
   }
   if (std::fputs((text + "\n").c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
     return Error{"cannot write to standard output"};
   }
+  noteWritten("standard output");
   return Success{};
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "scenes/procedural.h"
@@ -114,6 +115,20 @@ Status checkFolder(const NamedFolder& folder) {
   return Success{};
 }
 
+// Being told to end waits until the file is whole.
+Status saved(const std::string& file, const std::function<Status()>& write) {
+  Status status = Success{};
+  {
+    const SignalGuard guard;
+    status = write();
+    if (status) {
+      noteWritten(file);
+    }
+  }
+  endIfTold();
+  return status;
+}
+
 }  // namespace
 
 Status checkFiles(const CommandFiles& files) {
@@ -177,23 +192,11 @@ Status saveFile(const std::string& file, std::string_view bytes) {
 }
 
 Status saveFile(const std::string& file, std::span<const std::string_view> pieces) {
-  Status saved = Success{};
-  {
-    const SignalGuard guard;
-    saved = writeFile(file, pieces);
-  }
-  endIfTold();
-  return saved;
+  return saved(file, [&] { return writeFile(file, pieces); });
 }
 
 Status savePicture(const Image& image, const std::string& file) {
-  Status saved = Success{};
-  {
-    const SignalGuard guard;
-    saved = writePng(image, file);
-  }
-  endIfTold();
-  return saved;
+  return saved(file, [&] { return writePng(image, file); });
 }
 
 }  // namespace sightline::tool

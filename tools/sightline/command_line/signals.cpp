@@ -17,6 +17,8 @@ constexpr const char* kClearLine = "\r\033[K";  // erases a progress bar
 // What the handler reads. It is changed only while a SignalGuard defers signals.
 struct Ending {
   std::string command, text;
+  std::string written;               // files that were written whole
+  bool stated = false;               // whether keepWhenTold() has set the text
   std::vector<std::string> folders;  // outer folders before inner ones
 };
 
@@ -40,6 +42,11 @@ static_assert(std::atomic<int>::is_always_lock_free);
   ::_exit(interruptedExitCode());
 }
 
+void setText(const std::string& kept) {
+  ending().text = std::string(isatty(STDERR_FILENO) == 1 ? kClearLine : "") +
+                  "sightline: " + ending().command + " was interrupted; " + kept + "\n";
+}
+
 extern "C" void noteSignal(int signal) {
   if (told != 0) {
     ::_exit(128 + signal);  // told twice: finishing the protected work takes too long
@@ -54,7 +61,7 @@ extern "C" void noteSignal(int signal) {
 
 void endWhenTold(const std::string& command) {
   ending().command = command;
-  keepWhenTold("nothing was written");
+  setText("nothing was written");
   struct sigaction action {};
   action.sa_handler = noteSignal;
   for (const int signal : std::array{SIGINT, SIGTERM}) {
@@ -70,10 +77,18 @@ void endWhenTold(const std::string& command) {
 void keepWhenTold(const std::string& kept) {
   {
     const SignalGuard guard;
-    ending().text = std::string(isatty(STDERR_FILENO) == 1 ? kClearLine : "") +
-                    "sightline: " + ending().command + " was interrupted; " + kept + "\n";
+    ending().stated = true;
+    setText(kept);
   }
   endIfTold();
+}
+
+void noteWritten(const std::string& file) {
+  const SignalGuard guard;
+  if (!ending().stated) {
+    ending().written += (ending().written.empty() ? "" : ", ") + file;
+    setText("written so far: " + ending().written);
+  }
 }
 
 void removeWhenTold(const std::string& folder) {

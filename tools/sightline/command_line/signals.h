@@ -10,8 +10,10 @@ namespace sightline::tool {
 // removes the folders of removeWhenTold() that are empty, and exits with 128 + the signal's number. Signals
 // that were ignored when the process started stay ignored.
 void endWhenTold(const std::string& command);
-// Sets the text about what is kept; "nothing was written" until this is called.
+// Sets the text about what is kept. Until this is called it names the files of noteWritten(), or says that
+// nothing was written.
 void keepWhenTold(const std::string& kept);
+void noteWritten(const std::string& file);
 void removeWhenTold(const std::string& folder);
 
 // While a guard lives, being told to end is only noted. It protects work that must not stop in the middle.

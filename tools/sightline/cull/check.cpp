@@ -165,7 +165,8 @@ void addCheck(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("FILE", options->file, "what `sightline bake` wrote, F.sight")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
   addCommonOptions(*command, options->common);
   command
       ->add_option("--witnesses", options->witnesses,

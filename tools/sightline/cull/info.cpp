@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <span>
 
 #include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
@@ -259,31 +260,24 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data, co
   }
 }
 
-Result<ExitCode> runInfo(const InfoOptions& options) {
-  std::vector<double> widths = options.crack_widths;
-  std::erase(widths, 0.0);  // that is the scene as it is
-  if (const Status ok =
-          checkFiles({.scenes = {options.common.scene},
-                      .inputs = walkInputs(options.common.scene, options.path),
-                      .outputs = {{"--json", options.common.json}, {"--prepared", options.prepared}}});
-      !ok) {
-    return ok.error();
+// widths: of the cracks to close, none of them 0.
+Result<ExitCode> informOnBaked(const InfoOptions& options, std::span<const double> widths) {
+  if (options.common.threads > 1) {
+    return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
+                             options.common.threads)};
   }
-  if (isSightFile(options.common.scene)) {
-    if (options.common.threads > 1) {
-      return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
-                               options.common.threads)};
-    }
-    if (!widths.empty() || !options.path.path.empty() || !options.path.frames.empty()) {
-      return Error{
-          "--crack-width, --path, --frames: a baked file has no surfaces to walk past; leave them out"};
-    }
-    if (!options.prepared.empty()) {
-      return Error{"--prepared: nothing is prepared for a baked file; leave it out"};
-    }
-    const Status ok = informOnSight(options.common.scene, options.closed, options.common.json);
-    return ok ? Result<ExitCode>(kOk) : ok.error();
+  if (!widths.empty() || !options.path.path.empty() || !options.path.frames.empty()) {
+    return Error{
+        "--crack-width, --path, --frames: a baked file has no surfaces to walk past; leave them out"};
   }
+  if (!options.prepared.empty()) {
+    return Error{"--prepared: nothing is prepared for a baked file; leave it out"};
+  }
+  const Status ok = informOnSight(options.common.scene, options.closed, options.common.json);
+  return ok ? Result<ExitCode>(kOk) : ok.error();
+}
+
+Result<ExitCode> informOnScene(const InfoOptions& options, std::span<const double> widths) {
   if (!options.closed.empty()) {
     return Error{
         "--closed: it names doors of a baked file; leave it out, or give F.sight in place of the scene"};
@@ -323,6 +317,19 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
   }
   data.keepPrepared();
   return kOk;
+}
+
+Result<ExitCode> runInfo(const InfoOptions& options) {
+  if (const Status ok =
+          checkFiles({.scenes = {options.common.scene},
+                      .inputs = walkInputs(options.common.scene, options.path),
+                      .outputs = {{"--json", options.common.json}, {"--prepared", options.prepared}}});
+      !ok) {
+    return ok.error();
+  }
+  std::vector<double> widths = options.crack_widths;
+  std::erase(widths, 0.0);  // that is the scene as it is
+  return isSightFile(options.common.scene) ? informOnBaked(options, widths) : informOnScene(options, widths);
 }
 
 }  // namespace

@@ -590,7 +590,8 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
       .add_option("--baked", options.baked,
                   "a .sight file of the scene: its visible sets, and its occluder databases in place of "
                   "those that would be built")
-      ->type_name(kFileType);
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
   addClosedOption(command, options.closed);
   addPreparedOption(command, options.prepared);
   addCrackWidthOption(command, options.crack_width);
