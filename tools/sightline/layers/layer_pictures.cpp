@@ -216,7 +216,6 @@ class LayerPictures : public FrameMaker {
   }
 
   // Returns the parts left out, which include other parts of the same layers.
-  // Parts of which something is left out.
   Json leftOutParts(const SortedFrame& frame) const {
     std::vector<std::uint32_t> parts;
     for (const LayerId layer : settings_.left_out) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,10 @@ std::string relativeLink(std::string_view file);
 
 // 1234567.0 -> "1,234,567" with the given number of decimals; "–" when not finite.
 std::string groupedNumber(double value, int decimals);
+// 1234567 -> "1,234,567". Precondition: number < 2^53.
+inline std::string grouped(std::uint64_t number) {
+  return groupedNumber(static_cast<double>(number), 0);
+}
 
 // Number of characters (code points) of UTF-8 text.
 std::size_t characterCount(std::string_view text);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "tools/sightline/bench/frame_times.h"
 #include "tools/sightline/reproduce/bittner.h"
+#include "tools/sightline/reproduce/range.h"
 #include "tools/sightline/walk/walk_report.h"
 
 namespace sightline::tool::bittner {
@@ -60,9 +63,7 @@ double medianOf(const WalkRun& run, Of of) {
   for (const FrameRecord& frame : run.frames) {
     values.push_back(of(frame));
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.empty() ? 0.0 : *middle;
+  return tool::medianOf(std::move(values));
 }
 
 double overheadOf(const WalkRun& run) {
@@ -298,19 +299,6 @@ Experiment curveTable(const std::vector<Measured>& scenes) {
   }
   return experiment;
 }
-
-// The smallest and the largest of some values.
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-
-  void add(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  std::string text(int decimals) const {
-    return fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
-  }
-};
 
 // Calls add(scene, index of the case) for the paper's variants.
 template <typename Add>

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "sightline/comparison/traversal_record.h"
+#include "tools/sightline/report/markup.h"
 #include "tools/sightline/reproduce/bittner.h"
 #include "tools/sightline/reproduce/figure_colors.h"
 #include "tools/sightline/reproduce/tree_diagram.h"

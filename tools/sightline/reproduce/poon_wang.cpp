@@ -13,9 +13,11 @@
 
 #include "oracle/exact_visibility.h"
 #include "sightline/comparison/centre_coverage.h"
+#include "tools/sightline/bench/frame_times.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/report/markup.h"
 #include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/poon_wang.h"
 #include "tools/sightline/walk/walk_report.h"
@@ -133,11 +135,6 @@ SceneRuns measuredOf(const std::string& name, const WalkRun& run) {
     measured.frame_ms.push_back(frame.frameUs() * 1e-3);
   }
   return measured;
-}
-
-double medianOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // All that is measured on one scene.

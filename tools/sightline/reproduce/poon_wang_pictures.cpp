@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/sightline/report/markup.h"
 #include "tools/sightline/reproduce/poon_wang.h"
 #include "tools/sightline/walk/walk_pictures.h"
 #include "tools/sightline/walk/walk_report.h"

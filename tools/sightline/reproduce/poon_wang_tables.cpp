@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/sightline/reproduce/poon_wang.h"
+#include "tools/sightline/reproduce/range.h"
 
 namespace sightline::tool::poon_wang {
 namespace {
@@ -79,19 +80,6 @@ void forRows(const Experiment& experiment, const std::string& culling, Use&& use
     }
   }
 }
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-
-  void add(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  bool empty() const { return low > high; }
-  std::string text(int decimals) const {
-    return fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
-  }
-};
 
 // The most that a criterion culls with any number of occluders, percent.
 double mostCulled(const Experiment& counts, const std::string& criterion) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/sightline/report/markup.h"
 #include "tools/sightline/reproduce/saona_vazquez.h"
 #include "tools/sightline/walk/walk_report.h"
 

@@ -1,4 +1,5 @@
 #include "tools/sightline/walk/walk_pictures.h"
+#include "tools/sightline/report/markup.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #include "tools/sightline/walk/walk_report.h"
+#include "tools/sightline/report/markup.h"
 
 #include <fmt/format.h>
 
@@ -277,18 +278,6 @@ std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& reco
     facts.push_back({"OpenGL", record.device});
   }
   return facts;
-}
-
-std::string grouped(std::uint64_t number) {
-  const std::string digits = std::to_string(number);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) {
-      text += ',';
-    }
-    text += digits[i];
-  }
-  return text;
 }
 
 std::string walkJson(const WalkInput& input, const WalkRecord& record) {

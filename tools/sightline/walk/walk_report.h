@@ -18,9 +18,6 @@ struct WalkInput {
   const CrackClosing& closing;
 };
 
-// 1104233 -> "1,104,233"
-std::string grouped(std::uint64_t number);
-
 // The run's row in the table; numbers are means over all frames.
 ReportRow rowOf(const WalkRun& run, const WalkRecord& record);
 // A sentence with the share of the hierarchy that is tested and the setting's statistics (statisticsOf).
