@@ -75,6 +75,7 @@ TEST(Formats, TheKeysOfVerifyAreDescribedForOneSettingAndForSeveral) {
 }
 
 TEST(Formats, TheKeysOfWalkAreDescribed) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
   const TemporaryFolder folder;
   const std::vector<std::string> walk{"walk",     kCity,
                                       "--frames", "0:2",
@@ -131,13 +132,6 @@ TEST(Formats, TheKeysOfLayersDrawnAreDescribed) {
     EXPECT_TRUE(drawn["frames"][0].contains(key)) << key;
   }
   expectDocumented(drawn, {"layers"});
-}
-
-TEST(Formats, TheKeysOfAPapersTablesAreDescribed) {
-  SIGHTLINE_SKIP_WITHOUT_PICTURES();
-  expectDocumented(written({"reproduce", "poon-wang", "--short", "--scene", kCity, "--width", "32",
-                            "--height", "18", "--frames", "0:2"}),
-                   {"reproduce"});
 }
 
 // What readers promise: keys that they do not know are ignored.

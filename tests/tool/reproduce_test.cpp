@@ -14,27 +14,61 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<std::string> tiny(std::vector<std::string> more) {
-  std::vector<std::string> arguments{"reproduce", "coorg-teller", "--short",  "--frames", "0:400:80",
-                                     "--width",   "160",          "--height", "90"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+// What `reproduce` with -o prints and writes.
+struct Reproduced {
+  TemporaryFolder folder;  // also that of the tool's temporary files
+  std::string out = folder.file("new/report");
+  Outcome outcome;
+  json result;
+};
+
+// Runs the tool once in a process for the same arguments.
+const Reproduced& reproduced(const std::vector<std::string>& arguments) {
+  static std::map<std::vector<std::string>, Reproduced> made;
+  const auto [found, is_new] = made.try_emplace(arguments);
+  Reproduced& all = found->second;
+  if (is_new) {
+    const char* const before = std::getenv("TMPDIR");
+    const std::string old = before != nullptr ? before : "";
+    setenv("TMPDIR", all.folder.file("").c_str(), 1);
+    all.outcome = runTool(joined(arguments, {"-o", all.out}));
+    before != nullptr ? setenv("TMPDIR", old.c_str(), 1) : unsetenv("TMPDIR");
+    all.result = parse(contents(all.out + "/reproduce.json"));
+  }
+  EXPECT_EQ(all.outcome.code, 0) << all.outcome.err;
+  EXPECT_EQ(all.outcome.err, "");
+  return all;
 }
 
-json reproduced(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = tiny(more);
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome& outcome = runToolOnce(arguments);
+const Reproduced& reproducedCity() {
+  return reproduced({"reproduce", "coorg-teller", "--short", "--scene", kCity, "--frames", "0:400:80",
+                     "--width", "160", "--height", "90"});
+}
+
+// An observer who stands still and looks around, which leaves out what takes longest.
+json reproducedFromOnePlace(const std::vector<std::string>& scenes) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("still.json", R"({"fovy_deg":60,"width":64,"height":36,"near":0.1,"far":2000,)"
+                                 R"("frames":[{"eye":[0,2,0],"forward":[0,0,-1]},)"
+                                 R"({"eye":[0,2,0],"forward":[1,0,0]},)"
+                                 R"({"eye":[0,2,0],"forward":[0,0,1]},)"
+                                 R"({"eye":[0,2,0],"forward":[-1,0,0]}]})");
+  std::vector<std::string> arguments{"reproduce", "coorg-teller", "--path", path, "--json", "-"};
+  for (const std::string& scene : scenes) {
+    arguments.insert(arguments.end(), {"--scene", scene});
+  }
+  const Outcome outcome = runTool(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   return parse(outcome.out);
 }
 
 TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
-  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& result = reproducedCity().result;
   expectDocumented(result, {"reproduce"});
   EXPECT_EQ(result["paper"], "coorg-teller");
-  EXPECT_EQ(result["scenes"], json::array({"demo:city?copies=1"}));
+  EXPECT_EQ(result["scenes"], json::array({kCity}));
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
       {"polygons_drawn", {"scene", "culling", "triangles", "percent", "percent_of_frustum"}},
       {"frame_time", {"scene", "culling", "cull_ms"}},
@@ -58,12 +92,12 @@ TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
 }
 
 TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
-  const std::vector<std::string> scenes{"--scene", "demo:city?copies=1", "--scene", "demo:building?floors=1"};
-  const json result = reproduced(scenes);
+  const std::vector<std::string> scenes{kCity, "demo:building?floors=1"};
+  const json result = reproducedFromOnePlace(scenes);
   const json& rows = result["experiments"]["polygons_drawn"]["rows"];
   constexpr std::size_t kCullings = 5;  // the first is the baseline
-  ASSERT_EQ(rows.size(), scenes.size() / 2 * kCullings);
-  for (std::size_t scene = 0; scene < scenes.size() / 2; ++scene) {
+  ASSERT_EQ(rows.size(), scenes.size() * kCullings);
+  for (std::size_t scene = 0; scene < scenes.size(); ++scene) {
     const json& frustum = rows[kCullings * scene];
     EXPECT_EQ(frustum["culling"], "frustum");
     EXPECT_EQ(frustum["percent_of_frustum"], 100.0);
@@ -75,7 +109,7 @@ TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
 }
 
 TEST(Reproduce, ASlowerRendererGainsMore) {
-  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& result = reproducedCity().result;
   const json& rows = result["experiments"]["renderer_models"]["rows"];
   ASSERT_EQ(rows.size(), 5u * 4) << "five cullings, four renderers";
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -92,7 +126,7 @@ TEST(Reproduce, ASlowerRendererGainsMore) {
 }
 
 TEST(Reproduce, OnlyAFractionOfTheOccluderNodePairsIsCompared) {
-  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& result = reproducedCity().result;
   const json& kept = result["experiments"]["nodes_tested"]["rows"][0];
   EXPECT_GT(kept["node_pairs"], kept["nodes_tested"])
       << "each tested node is compared with an occluder at least";
@@ -104,7 +138,7 @@ TEST(Reproduce, OnlyAFractionOfTheOccluderNodePairsIsCompared) {
 }
 
 TEST(Reproduce, AFastObserverRebuildsMoreRelations) {
-  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& result = reproducedCity().result;
   const json& rows = result["experiments"]["visibility_time"]["rows"];
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows.front()["speed"], 1);
@@ -114,12 +148,9 @@ TEST(Reproduce, AFastObserverRebuildsMoreRelations) {
 }
 
 TEST(Reproduce, WritesTablesAndAReportOfEachScene) {
-  const TemporaryFolder folder;
-  const std::string out = folder.file("new/folder");
-  const Outcome outcome = runTool(tiny({"--scene", "demo:city?copies=1", "-o", out}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto& [folder, out, outcome, result] = reproducedCity();
   EXPECT_EQ(contents(out + "/tables.txt"), outcome.out);
-  EXPECT_TRUE(parse(contents(out + "/reproduce.json")).is_object());
+  EXPECT_TRUE(result.is_object());
   const std::string html = contents(out + "/1-demo-city-copies-1/index.html");
   EXPECT_NE(html.find("Coorg and Teller 1997: demo:city?copies=1"), std::string::npos);
   EXPECT_NE(html.find("reproduce coorg-teller"), std::string::npos) << "the command line";
@@ -127,10 +158,7 @@ TEST(Reproduce, WritesTablesAndAReportOfEachScene) {
 
 TEST(Reproduce, CoorgTellersColourPlateShowsFramesBesideTheirPlans) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
-  const TemporaryFolder folder;
-  const std::string out = folder.file("report");
-  const Outcome outcome = runTool(tiny({"--scene", "demo:city?copies=1", "-o", out}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto& [folder, out, outcome, result] = reproducedCity();
   const std::string page = out + "/1-demo-city-copies-1/";
   const std::string html = contents(page + "index.html");
   EXPECT_NE(html.find("Colour plate: frame 0 of the walk through demo:city?copies=1"), std::string::npos);
@@ -143,40 +171,22 @@ TEST(Reproduce, CoorgTellersColourPlateShowsFramesBesideTheirPlans) {
 }
 
 TEST(Reproduce, APathThatStandsStillHasNoSpeeds) {
-  const TemporaryFolder folder;
-  const std::string path =
-      folder.write("still.json",
-                   "{\"fovy_deg\":60,\"width\":64,\"height\":36,\"near\":0.1,\"far\":100,"
-                   "\"frames\":[{\"eye\":[0,2,0],\"forward\":[0,0,-1],\"up\":[0,1,0]}]}");
-  const Outcome outcome =
-      runTool({"reproduce", "coorg-teller", "--scene", "demo:city?copies=1", "--path", path, "--json", "-"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const json result = parse(outcome.out);
+  const json result = reproducedFromOnePlace({kCity});
   EXPECT_TRUE(result["experiments"]["visibility_time"]["rows"].empty());
   EXPECT_NE(result["notes"].dump().find("too short"), std::string::npos);
 }
 
 constexpr const char* kShipWithMachinery = "demo:ship?decks=3&rooms=4&machinery=8";
 
-std::vector<std::string> tinyShip(std::vector<std::string> more) {
-  std::vector<std::string> arguments{
-      "reproduce", "saona-vazquez", "--scene", kShipWithMachinery, "--depth", "4", "--frames",
-      "0:200:50",  "--width",       "160",     "--height",         "90"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
-json reproducedShip(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = tinyShip(more);
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome& outcome = runToolOnce(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-  return parse(outcome.out);
+const Reproduced& reproducedShip(const std::vector<std::string>& more = {}) {
+  return reproduced(
+      joined({"reproduce", "saona-vazquez", "--scene", kShipWithMachinery, "--depth", "4",
+              "--triangle-budget", "3000", "--frames", "0:200:50", "--width", "160", "--height", "90"},
+             more));
 }
 
 TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
-  const json result = reproducedShip();
+  const json& result = reproducedShip().result;
   expectDocumented(result, {"reproduce"});
   const std::vector<std::string> spread{"mean", "deviation", "min", "max"};
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
@@ -206,7 +216,7 @@ TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
 }
 
 TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
-  const json result = reproducedShip({"--triangle-budget", "3000"});
+  const json& result = reproducedShip().result;
   // The near plane's corner: 0.1 m, 60 degrees, 16 : 9.
   const double near_distance = 0.1 * std::sqrt(1.0 + (1.0 + 256.0 / 81.0) / 3.0);
   const TemporaryFolder folder;
@@ -240,7 +250,7 @@ TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
 }
 
 TEST(Reproduce, LeavesMeetLargerBudgetsAndAreFewerThen) {
-  const json result = reproducedShip();
+  const json& result = reproducedShip().result;
   const json& rows = result["experiments"]["budgets"]["rows"];
   ASSERT_EQ(rows.size(), 3u);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -254,7 +264,7 @@ TEST(Reproduce, LeavesMeetLargerBudgetsAndAreFewerThen) {
 }
 
 TEST(Reproduce, PiecesOfABakeComputeSamplesAgainAndHoldFewerAtATime) {
-  const json result = reproducedShip();
+  const json& result = reproducedShip().result;
   const json& pieces = result["experiments"]["pieces"]["rows"][0];
   const json& bake = result["experiments"]["bake"]["rows"][0];
   EXPECT_GT(pieces["parts"], 1);
@@ -268,7 +278,7 @@ TEST(Reproduce, PiecesOfABakeComputeSamplesAgainAndHoldFewerAtATime) {
 
 TEST(Reproduce, EachOfSaonaVazquezsTablesHasASentenceOnWhatAgrees) {
   std::string claims;
-  const json result = reproducedShip();
+  const json& result = reproducedShip().result;
   for (const json& finding : result["findings"]) {
     claims += finding["claim"].get<std::string>() + "\n";
     EXPECT_GT(finding["text"].get<std::string>().size(), 20u) << finding["claim"];
@@ -280,7 +290,7 @@ TEST(Reproduce, EachOfSaonaVazquezsTablesHasASentenceOnWhatAgrees) {
 }
 
 TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
-  const json result = reproducedShip();
+  const json& result = reproducedShip().result;
   const json& rows = result["experiments"]["polygons_sent"]["rows"];
   ASSERT_EQ(rows.size(), 4u);
   for (std::size_t navigation = 0; navigation < 2; ++navigation) {
@@ -294,22 +304,16 @@ TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
 }
 
 TEST(Reproduce, ThreadsMakeTheSameOctree) {
-  const json one = reproducedShip(), three = reproducedShip({"--threads", "3"});
+  const json &one = reproducedShip().result, &three = reproducedShip({"--threads", "3"}).result;
   for (const char* table : {"leaves", "levels", "histograms", "uniform_grid", "polygons_sent"}) {
     EXPECT_EQ(one["experiments"][table], three["experiments"][table]);
   }
 }
 
 TEST(Reproduce, TheBakedFileIsGoneAfterwards) {
-  const TemporaryFolder folder;
-  const char* const before = std::getenv("TMPDIR");
-  const std::string old = before != nullptr ? before : "";
-  setenv("TMPDIR", folder.file("").c_str(), 1);
-  const Outcome outcome = runTool(tinyShip({"-o", folder.file("report")}));
-  before != nullptr ? setenv("TMPDIR", old.c_str(), 1) : unsetenv("TMPDIR");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(folder.entries(), 1u) << "the report alone";
-  const std::string html = contents(folder.file("report/1-demo-ship-decks-3-rooms-4-machinery-8/index.html"));
+  const Reproduced& ship = reproducedShip();
+  EXPECT_EQ(ship.folder.entries(), 1u) << "the report alone";
+  const std::string html = contents(ship.out + "/1-demo-ship-decks-3-rooms-4-machinery-8/index.html");
   EXPECT_NE(html.find("Leaves by depth"), std::string::npos);
   EXPECT_NE(html.find("Triangles that may be seen, by depth"), std::string::npos);
 }
@@ -324,18 +328,13 @@ TEST(Reproduce, ShortTakesASmallShipAndFewFrames) {
   EXPECT_EQ(result["experiments"]["look_up"]["rows"][1]["frames"], 20);
 }
 
-json reproducedRoutes(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments{"reproduce", "poon-wang", "--short", "--scene", "demo:city?copies=2",
-                                     "--frames",  "0:60:20",   "--width", "64",      "--height",
-                                     "64",        "--json",    "-"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const Outcome& outcome = runToolOnce(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
+const Reproduced& reproducedRoutes() {
+  return reproduced({"reproduce", "poon-wang", "--short", "--scene", "demo:city?copies=2", "--frames",
+                     "0:60:20", "--width", "64", "--height", "64"});
 }
 
 TEST(Reproduce, PoonWangHasATableForEachExperiment) {
-  const json result = reproducedRoutes();
+  const json& result = reproducedRoutes().result;
   expectDocumented(result, {"reproduce"});
   const json& tables = result["experiments"];
   EXPECT_EQ(tables.size(), 5u);
@@ -363,9 +362,7 @@ TEST(Reproduce, PoonWangHasATableForEachExperiment) {
 
 TEST(Reproduce, PoonWangsTopViewsAndBirdsEyeViewAreInTheReport) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
-  const TemporaryFolder folder;
-  const std::string out = folder.file("report");
-  const json result = reproducedRoutes({"-o", out});
+  const auto& [folder, out, outcome, result] = reproducedRoutes();
   const std::string page = out + "/1-demo-city-copies-2/";
   const std::string html = contents(page + "index.html");
   for (const std::string picture :
@@ -380,7 +377,7 @@ TEST(Reproduce, PoonWangsTopViewsAndBirdsEyeViewAreInTheReport) {
 
 TEST(Reproduce, TheAdaptiveOverlapTestFollowsTheMeasuredRendererOnEachRoute) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
-  const json result = reproducedRoutes();
+  const json& result = reproducedRoutes().result;
   std::set<std::string> routes;
   for (const json& row : result["experiments"]["routes"]["rows"]) {
     if (row["culling"] == "OM, adaptive") {
@@ -397,7 +394,7 @@ TEST(Reproduce, TheAdaptiveOverlapTestFollowsTheMeasuredRendererOnEachRoute) {
 }
 
 TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {
-  const json tables = reproducedRoutes()["experiments"];
+  const json& tables = reproducedRoutes().result["experiments"];
   std::map<std::string, json> published;  // by table, culling and what else tells rows apart
   for (const char* table : {"routes", "criteria", "occluder_counts"}) {
     for (const json& row : tables[table]["rows"]) {
@@ -414,7 +411,7 @@ TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {
 }
 
 TEST(Reproduce, ThePeaksOfTheSparseDepthMapAreUsedWhereTheyAreForced) {
-  const json tables = reproducedRoutes()["experiments"];
+  const json& tables = reproducedRoutes().result["experiments"];
   const json& rows = tables["depth_comparison"]["rows"];
   ASSERT_EQ(rows.size(), 3u * 3) << "three routes, three comparisons";
   for (std::size_t route = 0; route < 3; ++route) {
@@ -447,7 +444,7 @@ TEST(Reproduce, WhatIsNotThereIsRefused) {
                 "--frames");
   const TemporaryFolder folder;
   const std::string file = folder.write("there", "old");
-  expectRefused(tiny({"--scene", "demo:city?copies=1", "-o", file}), "there");
+  expectRefused({"reproduce", "coorg-teller", "--scene", "demo:city?copies=1", "-o", file}, "there");
   EXPECT_EQ(contents(file), "old");
 }
 
