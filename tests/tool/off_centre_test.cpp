@@ -20,7 +20,7 @@ TEST(Tool, VerifyFindsNoFalseCullInOffCentreViews) {
     const std::string path = folder.write("walk.json", pathThroughTheCity(shift));
     const Outcome outcome = runTool({"verify", "demo:city?copies=1", "--path", path, "--method",
                                      "frustum,supporting-planes,occlusion-tree,opacity-map,depth-pyramid",
-                                     "--aimed-rays", "4", "--json", "-"});
+                                     "--width", "160", "--height", "90", "--aimed-rays", "4", "--json", "-"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json verify = json::parse(outcome.out);
     ASSERT_EQ(verify["runs"].size(), 5u);
