@@ -91,7 +91,7 @@ TEST(Bake, EndsAllProcessesWithOneLine) {
   const std::string file = folder.file("F.sight");
   for (const std::vector<std::string>& bad :
        {bakeArguments(folder.file("missing.glb"), file), bakeArguments(kShip, folder.file("")),
-        bakeArguments(kShip, file, {"--databases", "bogus"}), bakeArguments(kShip, file, {"--bogus"})}) {
+        bakeArguments(kShip, file, {"--bogus"})}) {
     const Outcome outcome = Started(toolWords(3, bad)).wait();
     EXPECT_EQ(outcome.code, 2) << ::testing::PrintToString(bad);
     EXPECT_EQ(ownLines(outcome.err), 1) << outcome.err;
@@ -313,8 +313,9 @@ TEST(Bake, OfAPathHoldsSetsWhereItLeadsAndOfFreeSpaceWhereItCanLead) {
   EXPECT_GT(path["stop_reasons"]["outside"], everywhere["stop_reasons"]["outside"]);
   EXPECT_NE(low["plan"], free["plan"]);
   // No eye of the camera path is outside.
-  const Outcome walk = runTool({"verify", kShip, "--method", "visibility-octree", "--baked",
-                                folder.file("F.sight"), "--frames", "0:1000000:50"});
+  const Outcome walk =
+      runTool({"verify", kShip, "--method", "visibility-octree", "--baked", folder.file("F.sight"),
+               "--frames", "0:1000000:50", "--width", "160", "--height", "90"});
   EXPECT_EQ(walk.code, 0) << walk.out << walk.err;
   EXPECT_EQ(walk.err.find("outside"), std::string::npos) << walk.err;
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/pictures.h"
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 

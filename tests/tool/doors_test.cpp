@@ -66,7 +66,7 @@ TEST_F(DoorCommands, LeaveOutNothingThatIsVisibleWhicheverAreClosed) {
         run("verify", joined({"--proof", "--pairs", std::to_string(test::rounds(40)), "--json", "-"}, doors));
     EXPECT_EQ(regions.code, 0) << closed << regions.err;
     const Outcome views =
-        run("verify", joined({"--path", "cells", "--frames", test::sanitized() ? "0:2000:268" : "0:2000:67",
+        run("verify", joined({"--path", "cells", "--frames", test::sanitized() ? "0:2000:6" : "0:2000:2",
                               "--width", "64", "--height", "64", "--method",
                               "visibility-octree,depth-pyramid", "--visible-sets", "on", "--json", "-"},
                              doors));
@@ -100,7 +100,8 @@ TEST_F(DoorCommands, AreContradictedWhereWhatTheyHideIsVisible) {
 
 TEST_F(DoorCommands, AreCheckedAsTheyAreClosed) {
   const auto check = [](const std::vector<std::string>& doors) {
-    return runTool(joined({"check", file(), kHouse, "--rays", "2", "--json", "-"}, doors));
+    return runTool(
+        joined({"check", file(), kHouse, "--divisions", "0", "--rays", "2", "--json", "-"}, doors));
   };
   const Outcome open = check({}), closed = check({"--closed", "all"});
   ASSERT_EQ(open.code, 0) << open.err;

@@ -30,7 +30,10 @@ TEST(FrontDoor, HelpOfACommandIsItsHelp) {
     const Outcome help = runTool({"help", command});
     EXPECT_EQ(help.code, 0) << help.err;
     EXPECT_NE(help.out.find("sightline " + command), std::string::npos) << help.out;
-    EXPECT_EQ(help.out, runTool({command, "--help"}).out);
+    const Outcome option = runTool({command, "--help"});
+    EXPECT_EQ(option.code, 0) << command;
+    EXPECT_EQ(option.err, "") << command;
+    EXPECT_EQ(option.out, help.out);
   }
   expectRefused({"help", "wlak"}, "did you mean 'walk'?");
 }

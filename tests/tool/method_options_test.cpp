@@ -223,9 +223,9 @@ TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
                                      "--planes",    "through-eye,through-box",
                                      "--hierarchy", "kd,bvh",
                                      "--coherence", "on,off",
-                                     "--frames",    "0:400:25",
-                                     "--width",     "640",
-                                     "--height",    "360",
+                                     "--frames",    "0:400:100",
+                                     "--width",     "160",
+                                     "--height",    "90",
                                      "--json",      "-"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json runs = parse(outcome.out)["runs"];
@@ -239,10 +239,15 @@ TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
 TEST(MethodOptions, WhatNeedsABakedFileSaysHowToMakeOne) {
   const std::string remedy = "--baked F.sight; make one with: sightline bake SCENE -o F.sight";
   for (const std::string command : {"cull", "verify"}) {
-    expectRefused({command, kCity, "--method", "visibility-octree"}, "--method visibility-octree: ");
-    expectRefused({command, kCity, "--method", "visibility-octree"}, remedy);
-    expectRefused({command, kCity, "--visible-sets", "on"}, "--visible-sets on: ");
-    expectRefused({command, kCity, "--visible-sets", "on"}, remedy);
+    for (const auto& [option, value] :
+         {std::pair("--method", "visibility-octree"), {"--visible-sets", "on"}}) {
+      const Outcome outcome = runTool({command, kCity, option, value});
+      EXPECT_EQ(outcome.code, 2);
+      EXPECT_EQ(outcome.errorLines(), 1) << outcome.err;
+      EXPECT_NE(outcome.err.find(std::string(option) + " " + value + ": "), std::string::npos) << outcome.err;
+      EXPECT_NE(outcome.err.find(remedy), std::string::npos) << outcome.err;
+      EXPECT_EQ(outcome.out, "");
+    }
   }
   expectRefused({"verify", kCity, "--method", "frustum,visibility-octree"}, remedy);
   expectRefused({"cull", kCity, "--path", "cells"}, "--baked");
@@ -254,6 +259,8 @@ TEST(MethodOptions, ABakedFileThatIsNoneIsRefused) {
   const std::string none = folder.file("none.sight"), text = folder.write("text.sight", "hello");
   expectRefused({"cull", kCity, "--baked", none}, none);
   expectRefused({"verify", kCity, "--baked", text}, text);
+  expectRefused({"verify", kCity, "--baked", "", "--proof"}, "--baked: is empty");
+  expectRefused({"check", "", kCity}, "FILE: is empty");
 }
 
 TEST(MethodOptions, BakedViewpointsLieNearThePathThatBakeWasGiven) {
@@ -273,7 +280,7 @@ TEST(MethodOptions, BakedViewpointsLieNearThePathThatBakeWasGiven) {
   const json near_path = viewpoints({"--viewpoint-path", path, "--viewpoint-spacing", "3"});
   EXPECT_EQ(near_path["spacing"], 3.0);
   EXPECT_LE(near_path["points"], 8) << "the corners around one viewpoint";
-  EXPECT_GT(viewpoints({})["points"], 8) << "all over the scene";
+  EXPECT_GT(viewpoints({"--viewpoint-spacing", "20"})["points"], 8) << "all over the scene";
   expectRefused({"bake", scene, "-o", folder.file("b.sight"), "--viewpoint-path", "nothing.json"},
                 "nothing.json");
 }
@@ -287,9 +294,7 @@ class BakedMethods : public ::testing::Test {
     static const TemporaryFolder folder;
     static const std::string made = [] {
       const std::string name = folder.file("building.sight");
-      const Outcome outcome =
-          runTool({"bake", kScene, "-o", name, "--depth", "5", "--triangle-budget", "1", "--databases",
-                   "area-angle,minimum-sets", "--viewpoint-spacing", "20"});
+      const Outcome outcome = runTool({"bake", kScene, "-o", name, "--depth", "5", "--triangle-budget", "1"});
       EXPECT_EQ(outcome.code, 0) << outcome.err;
       return name;
     }();
@@ -335,15 +340,20 @@ TEST_F(BakedMethods, VisibleSetsAreAnOptionOfTheOtherMethods) {
   EXPECT_NE(text.find(", visible-sets on)"), std::string::npos) << text;
 }
 
-TEST_F(BakedMethods, DatabasesOfTheFileAreNotBuiltAgain) {
+TEST(MethodOptions, DatabasesOfABakedFileAreNotBuiltAgain) {
+  const TemporaryFolder folder;
+  const std::string made = folder.file("city.sight");
+  const Outcome bake = runTool({"bake", kCity, "-o", made, "--depth", "1", "--databases",
+                                "area-angle,minimum-sets", "--viewpoint-spacing", "20"});
+  ASSERT_EQ(bake.code, 0) << bake.err;
   // They hold the same, but that the file's minimum sets were not made for one walk.
-  const json with = culled({"--occluders", "database", "--frames", "0:40:10", "--no-times"});
-  const Outcome built = runTool(
-      {"cull", kScene, "--occluders", "database", "--frames", "0:40:10", "--no-times", "--json", "-"});
-  EXPECT_EQ(with["database"]["bytes"], parse(built.out)["database"]["bytes"]);
-  EXPECT_EQ(with["frames"], parse(built.out)["frames"]);
-  EXPECT_GT(culled({"--occluders", "minimum-sets", "--frames", "0"})["viewpoints"]["minimum-sets"]["points"],
-            0);
+  const std::vector<std::string> database{"--occluders", "database", "--no-times"};
+  const json with = culledCity(joined(database, {"--baked", made})), built = culledCity(database);
+  EXPECT_EQ(with["database"]["bytes"], built["database"]["bytes"]);
+  EXPECT_EQ(with["frames"], built["frames"]);
+  EXPECT_GT(
+      culledCity({"--occluders", "minimum-sets", "--baked", made})["viewpoints"]["minimum-sets"]["points"],
+      0);
 }
 
 TEST_F(BakedMethods, AFileOfAnotherSceneIsRefused) {
@@ -363,7 +373,7 @@ TEST_F(BakedMethods, TheCellsAreAPath) {
 TEST_F(BakedMethods, HideNothingVisibleAtTheBordersOfCells) {
   const Outcome outcome =
       runTool({"verify", kScene, "--baked", file(), "--path", "cells", "--frames",
-               test::sanitized() ? "0:500:20" : "0:500:5", "--width", "320", "--height", "180", "--method",
+               test::sanitized() ? "0:500:20" : "0:500:10", "--width", "160", "--height", "90", "--method",
                "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
                "--visible-sets", "on", "--json", "-"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {

@@ -1,11 +1,7 @@
-// `query` and `info` of baked files, against a file made by hand and against rays.
+// `query` and `info` of baked files, against a file made by hand.
 
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
-#include "oracle/exact_visibility.h"
-#include "scenes/procedural.h"
 #include "sightline/pvs/bake/write_sight.h"
 #include "tests/tool/run_tool.h"
 
@@ -238,42 +234,6 @@ TEST(Query, OfOtherFilesIsRefused) {
   const std::string scene = folder.write("scene.obj", "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n");
   expectRefused({"query", scene, "--points", "1,1,1"}, "scene.obj");
   expectRefused({"info", folder.write("letter.sight", "dear reader, this is no baked file")}, "letter.sight");
-}
-
-// What rays see from points of a walk, in all directions.
-TEST(Query, HoldsAllThatRaysSee) {
-  const TemporaryFolder folder;
-  const std::string url = "demo:ship?decks=3&rooms=4&machinery=0", file = folder.file("F.sight");
-  const Outcome baked = runTool({"bake", url, "-o", file, "--depth", "4", "--triangle-budget", "300",
-                                 "--near-distance", "0.2", "--threads", "2"});
-  ASSERT_EQ(baked.code, 0) << baked.err;
-  const Result<Scene> scene = makeDemoScene(url);
-  ASSERT_TRUE(scene);
-  const CameraPath& path = scene->paths.front();
-  const ExactVisibility oracle(scene->view());
-  std::size_t fewest = scene->objects.size();
-  for (std::size_t frame = 0; frame < path.frames.size(); frame += path.frames.size() / 5) {
-    View view = path.view(frame, scene->origin);
-    const Vec3d& eye = path.frames[frame].eye;
-    std::ostringstream point;
-    point << std::setprecision(17) << eye.x << ',' << eye.y << ',' << eye.z;
-    const Outcome outcome = runTool({"query", file, "--points", point.str(), "--json", "-"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const std::vector<std::uint32_t> visible = parse(outcome.out)["points"][0]["visible"];
-    EXPECT_TRUE(std::is_sorted(visible.begin(), visible.end()));
-    fewest = std::min(fewest, visible.size());
-    view.aspect = view.tan_half_fovy = 1.0;
-    view.z_near = 0.11;  // its corners are at 0.19
-    for (const Vec3d forward : {Vec3d(1, 0, 0), Vec3d(-1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, 0, -1),
-                                Vec3d(0, 1, 0), Vec3d(0, -1, 0)}) {
-      setOrientation(view, forward, {0.3, 1.0, 0.2});
-      for (const Witness& seen : oracle.visibleThroughPixels(view, 128, 128)) {
-        EXPECT_TRUE(std::binary_search(visible.begin(), visible.end(), seen.object.value))
-            << "object " << seen.object.value << " in frame " << frame;
-      }
-    }
-  }
-  EXPECT_LT(fewest, scene->objects.size()) << "nothing was hidden from anywhere";
 }
 
 }  // namespace

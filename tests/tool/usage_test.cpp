@@ -5,17 +5,6 @@
 namespace sightline::tool_test {
 namespace {
 
-TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
-  EXPECT_EQ(runTool({"--help"}).code, 0);
-  EXPECT_EQ(runTool({"--version"}).code, 0);
-  for (const std::string command : {"info", "walk", "cull", "verify", "bench", "reproduce"}) {
-    const Outcome outcome = runTool({command, "--help"});
-    EXPECT_EQ(outcome.code, 0) << command;
-    EXPECT_EQ(outcome.err, "") << command;
-    EXPECT_NE(outcome.out.find("sightline " + command + " "), std::string::npos) << command;
-  }
-}
-
 TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
   expectRefused({"bogus"}, "info, walk, cull, verify, bench, reproduce");
   expectRefused({"cull"}, "SCENE");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "oracle/exact_visibility.h"
 #include "sightline/pvs/bake/write_sight.h"
 #include "sightline/pvs/query/sight_file.h"
@@ -18,17 +20,21 @@ const std::string kRegionScene = "demo:ship?decks=3&rooms=4&machinery=0";
 
 class VerifyRegions : public ::testing::Test {
  protected:
-  void SetUp() override {
+  // The bake is made once for all tests.
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    file_ = folder_->file("ship.sight");
     const Outcome outcome =
         runTool({"bake", kRegionScene, "-o", file_, "--depth", "4", "--triangle-budget", "300"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
   }
+  static void TearDownTestSuite() { folder_.reset(); }
   static Outcome verify(const std::string& file, const std::vector<std::string>& more) {
     return runTool(joined({"verify", kRegionScene, "--baked", file, "--proof"}, more));
   }
 
-  TemporaryFolder folder_;
-  const std::string file_ = folder_.file("ship.sight");
+  inline static std::unique_ptr<TemporaryFolder> folder_;
+  inline static std::string file_;
 };
 
 TEST_F(VerifyRegions, ContradictsNothingThatIsTrueWhateverTheThreads) {
@@ -52,7 +58,7 @@ TEST_F(VerifyRegions, ContradictsSetsFromWhichVisibleObjectsAreRemoved) {
     leaf.set = leaf.front_set = leaf.back_set = 0;
   }
   baked.sets = {{0, 0}, {}};
-  const std::string tampered = folder_.file("tampered.sight");
+  const std::string tampered = folder_->file("tampered.sight");
   const Status written = writeSight(tampered, baked);
   ASSERT_TRUE(written) << written.error().message;
   const Outcome outcome = verify(tampered, {"--pairs", "80", "--json", "-", "--threads", "2"});
