@@ -9,46 +9,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "tests/support/temporary_folder.h"
 
 namespace sightline::tool_test {
 
 // A small scene, for tests that need any.
 inline const std::string kCity = "demo:city?copies=1";
 
-// A new folder that the destructor removes.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sightline-tool-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
-  }
-  std::size_t entries() const {
-    const auto all = std::filesystem::directory_iterator(path_);
-    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string contents(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::contents;
+using test::TemporaryFolder;
 
 struct Outcome {
   int code = -1;
@@ -85,15 +58,6 @@ inline std::string toolFile() {
 // Runs the tool with these arguments, each of which is one word.
 inline Outcome runTool(const std::vector<std::string>& arguments) {
   return runProgram(toolFile(), arguments);
-}
-
-// The same, but only once in a process for the same arguments: for tests of one suite that look at the same
-// report.
-inline const Outcome& runToolOnce(const std::vector<std::string>& arguments) {
-  static std::map<std::vector<std::string>, Outcome> outcomes;
-  const auto found = outcomes.find(arguments);
-  return found != outcomes.end() ? found->second
-                                 : outcomes.emplace(arguments, runTool(arguments)).first->second;
 }
 
 // Expects bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.
