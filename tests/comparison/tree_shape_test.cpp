@@ -50,16 +50,18 @@ TEST(TreeShape, TellsOfEveryPointWhatRaysTell) {
       continue;
     }
     const OccluderSet set = setOf(scene.polygons);
+    const std::vector<PreparedPolygon> polygons = prepared(scene.polygons);
+    const Frustum frustum = frustumOf(scene.view);
     for (const bool modified : {false, true}) {
       const TreeShape tree = shapeOfTree(scene.view, set, all(set), modified);
       for (int i = 0; i < 400; ++i) {
         const Vec3d point = scene.origin + scene.random.point(20.0);
-        if (!insideView(scene.view, point)) {
+        if (!insideView(frustum, point)) {
           continue;
         }
         // Outlines are drawn in by less than this margin, which leaves such rays undecided.
         RayAnswer answer = RayAnswer::kClear;
-        for (const OraclePolygon& polygon : scene.polygons) {
+        for (const PreparedPolygon& polygon : polygons) {
           const RayAnswer one =
               castAt(polygon, scene.view.eye, point, scene.view.z_near, scene.view.forward, 1e-3);
           answer = one == RayAnswer::kBlocked || answer == RayAnswer::kBlocked ? RayAnswer::kBlocked

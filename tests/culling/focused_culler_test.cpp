@@ -27,6 +27,7 @@ using test::Random;
 // objects.
 struct Street {
   std::vector<test::OraclePolygon> polygons;
+  std::vector<test::PreparedPolygon> prepared;  // the same, for rays
   std::vector<Box> bounds;
   OccluderSet occluders;
   Hierarchy hierarchy;
@@ -57,6 +58,7 @@ struct Street {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       input.push_back({polygons[i].vertices, polygons[i].double_sided, owners[i]});
     }
+    prepared = test::prepared(polygons);
     occluders = makeOccluders(input);
     hierarchy = buildHierarchy(bounds, {});
     for (int frame = 0; frame < 6; ++frame) {
@@ -99,8 +101,7 @@ bool kept(const AnyCuller& culler, std::size_t object) {
 // Whether rays reach a small box of the street.
 bool seen(const Street& street, std::size_t object, const View& view) {
   std::mt19937_64 random(object);
-  const std::span<const test::OraclePolygon> polygons(street.polygons);
-  return test::lookAt(street.bounds[object], view, polygons, 400, random).seen;
+  return test::lookAt(street.bounds[object], view, street.prepared, 400, random).seen;
 }
 
 AnySettings focused(bool coherent) {
@@ -168,10 +169,10 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
         more += kept(without, i) ? 1 : 0;
         std::mt19937_64 random(i);
         // The polygons of an occluding object would block rays to itself.
-        const std::span<const test::OraclePolygon> polygons(street.polygons);
-        const test::Sight sight = i < street.first_small ? test::Sight{}
-                                                         : test::lookAt(street.bounds[i], view, polygons,
-                                                                        kept(without, i) ? 400 : 20, random);
+        const test::Sight sight =
+            i < street.first_small
+                ? test::Sight{}
+                : test::lookAt(street.bounds[i], view, street.prepared, kept(without, i) ? 400 : 20, random);
         EXPECT_FALSE(sight.seen) << "seed " << seed << ", frame " << frame << ", object " << i << " at "
                                  << sight.point.x << " " << sight.point.y << " " << sight.point.z;
       }

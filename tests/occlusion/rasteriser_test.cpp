@@ -404,6 +404,7 @@ TEST(Rasteriser, LeavesNoLeaksInATessellatedWall) {
 // No ray through a covered pixel passes beyond the stored depth.
 void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, std::size_t& covered) {
   const DepthBufferView& buffer = drawn.buffer;
+  const std::vector<PreparedPolygon> polygons = prepared(scene.polygons);
   const std::size_t total = drawn.covered();
   const std::size_t step = total / 200 + 1;
   std::size_t index = 0;
@@ -423,7 +424,7 @@ void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, 
         };
         const double farther = 1e-4 * depth + (i % 2 == 0 ? 0.0 : scene.random.in(0, 5) * depth);
         const Vec3d point = pointAt(scene.view, buffer, x + within(), y + within(), depth + farther);
-        ASSERT_NE(castAtAll(scene.polygons, scene.view, point), RayAnswer::kClear)
+        ASSERT_NE(castAtAll(polygons, scene.view, point), RayAnswer::kClear)
             << what << ", pixel " << x << " " << y << ", depth " << depth << " + " << farther;
       }
     }

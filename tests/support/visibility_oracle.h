@@ -21,19 +21,37 @@ struct OraclePolygon {
 
 enum class RayAnswer { kClear, kBlocked, kUndecided };
 
+// A polygon with what does not depend on the ray: its normal, and of each edge the direction inwards.
+struct PreparedPolygon {
+  struct Edge {
+    Vec3d corner, inwards;
+  };
+
+  explicit PreparedPolygon(const OraclePolygon& polygon)
+      : origin(polygon.vertices[0]), double_sided(polygon.double_sided) {
+    const std::size_t n = polygon.vertices.size();
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+      normal += cross(Vec3d(polygon.vertices[i]) - origin, Vec3d(polygon.vertices[i + 1]) - origin);
+    }
+    normal = normalized(normal);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3d a(polygon.vertices[i]), b(polygon.vertices[(i + 1) % n]);
+      edges.push_back({a, normalized(cross(normal, b - a))});
+    }
+  }
+
+  Vec3d origin, normal;
+  bool double_sided = false;
+  std::vector<Edge> edges;
+};
+
 // Tests the segment from `from` to `to` against one polygon. margin: relative distance within which the
 // result is undecided.
-inline RayAnswer castAt(const OraclePolygon& polygon, const Vec3d& from, const Vec3d& to, double near_depth,
+inline RayAnswer castAt(const PreparedPolygon& polygon, const Vec3d& from, const Vec3d& to, double near_depth,
                         const Vec3d& forward, double margin = 1e-10) {
-  const std::size_t n = polygon.vertices.size();
-  Vec3d normal;
-  const Vec3d origin(polygon.vertices[0]);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    normal += cross(Vec3d(polygon.vertices[i]) - origin, Vec3d(polygon.vertices[i + 1]) - origin);
-  }
-  normal = normalized(normal);
-  const double size = length(from - origin) + length(to - origin);
-  const double before = dot(normal, from - origin), after = dot(normal, to - origin);
+  const double size = length(from - polygon.origin) + length(to - polygon.origin);
+  const double before = dot(polygon.normal, from - polygon.origin),
+               after = dot(polygon.normal, to - polygon.origin);
   if (std::abs(before) < margin * size || std::abs(after) < margin * size) {
     return RayAnswer::kUndecided;
   }
@@ -43,10 +61,8 @@ inline RayAnswer castAt(const OraclePolygon& polygon, const Vec3d& from, const V
   const Vec3d direction = to - from;
   const Vec3d hit = from + direction * (before / (before - after));
   bool inside = true, undecided = false;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3d a(polygon.vertices[i]), b(polygon.vertices[(i + 1) % n]);
-    const Vec3d inwards = normalized(cross(normal, b - a));
-    const double d = dot(inwards, hit - a);
+  for (const PreparedPolygon::Edge& edge : polygon.edges) {
+    const double d = dot(edge.inwards, hit - edge.corner);
     undecided |= std::abs(d) < margin * size;
     inside &= d > 0.0;
   }
@@ -63,11 +79,15 @@ inline RayAnswer castAt(const OraclePolygon& polygon, const Vec3d& from, const V
   return depth > near_depth ? RayAnswer::kBlocked : RayAnswer::kClear;
 }
 
-inline RayAnswer castAtAll(std::span<const OraclePolygon> polygons, const View& view, const Vec3d& target) {
+inline std::vector<PreparedPolygon> prepared(std::span<const OraclePolygon> polygons) {
+  return {polygons.begin(), polygons.end()};
+}
+
+inline RayAnswer castAtAll(std::span<const PreparedPolygon> polygons, const View& view, const Vec3d& target) {
   const Vec3d from =
       view.orthographic ? target - view.forward * dot(view.forward, target - view.eye) : view.eye;
   RayAnswer answer = RayAnswer::kClear;
-  for (const OraclePolygon& polygon : polygons) {
+  for (const PreparedPolygon& polygon : polygons) {
     const RayAnswer one = castAt(polygon, from, target, view.z_near, view.forward);
     if (one == RayAnswer::kBlocked) {
       return one;
@@ -79,13 +99,21 @@ inline RayAnswer castAtAll(std::span<const OraclePolygon> polygons, const View& 
   return answer;
 }
 
-inline bool insideView(const View& view, const Vec3d& point) {
-  for (const Plane& plane : frustumOf(view).planes) {
+inline RayAnswer castAtAll(std::span<const OraclePolygon> polygons, const View& view, const Vec3d& target) {
+  return castAtAll(prepared(polygons), view, target);
+}
+
+inline bool insideView(const Frustum& frustum, const Vec3d& point) {
+  for (const Plane& plane : frustum.planes) {
     if (plane.evaluate(point) < 1e-9 * (1.0 + length(point))) {
       return false;
     }
   }
   return true;
+}
+
+inline bool insideView(const View& view, const Vec3d& point) {
+  return insideView(frustumOf(view), point);
 }
 
 struct Sight {
@@ -95,8 +123,9 @@ struct Sight {
 };
 
 // Tests `samples` random points of the box's surface, including its corners and points on its edges.
-inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePolygon> polygons, int samples,
+inline Sight lookAt(const Box& box, const View& view, std::span<const PreparedPolygon> polygons, int samples,
                     std::mt19937_64& random) {
+  const Frustum frustum = frustumOf(view);
   Sight sight;
   for (int s = 0; s < samples; ++s) {
     Vec3d t;
@@ -111,7 +140,7 @@ inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePoly
     for (int axis = 0; axis < 3; ++axis) {
       point[axis] = box.min[axis] + t[axis] * (static_cast<double>(box.max[axis]) - box.min[axis]);
     }
-    if (!insideView(view, point)) {
+    if (!insideView(frustum, point)) {
       continue;
     }
     const RayAnswer answer = castAtAll(polygons, view, point);
@@ -123,6 +152,11 @@ inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePoly
     }
   }
   return sight;
+}
+
+inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePolygon> polygons, int samples,
+                    std::mt19937_64& random) {
+  return lookAt(box, view, prepared(polygons), samples, random);
 }
 
 }  // namespace sightline::test
