@@ -106,33 +106,15 @@ class PlainBox {
       corners_.push_back({view.pixelX(camera), view.pixelY(camera)});
     }
     makeHull();
+    makeAxes();
   }
 
   // How far the hull is from the square of a pixel, negative inside: the best separating axis, pixels.
   double distanceTo(std::uint32_t x, std::uint32_t y) const {
     double distance = -INFINITY;
-    const auto separate = [&](double nx, double ny) {
-      const double length = std::hypot(nx, ny);
-      if (length == 0.0) {
-        return;
-      }
-      double hull_min = INFINITY, square_max = -INFINITY;
-      for (const Place& p : hull_) {
-        hull_min = std::min(hull_min, (nx * p.x + ny * p.y) / length);
-      }
-      for (unsigned i = 0; i < 4; ++i) {
-        square_max = std::max(square_max, (nx * (x + (i & 1u)) + ny * (y + (i >> 1))) / length);
-      }
-      distance = std::max(distance, hull_min - square_max);
-    };
-    for (const auto& [nx, ny] :
-         {std::pair(1.0, 0.0), std::pair(-1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.0, -1.0)}) {
-      separate(nx, ny);
-    }
-    for (std::size_t i = 0; i < hull_.size(); ++i) {
-      const Place &a = hull_[i], &b = hull_[(i + 1) % hull_.size()];
-      separate(a.y - b.y, b.x - a.x);
-      separate(b.y - a.y, a.x - b.x);
+    for (const Axis& axis : axes_) {
+      const double square_max = axis.nx * x + axis.ny * y + std::max(axis.nx, 0.0) + std::max(axis.ny, 0.0);
+      distance = std::max(distance, axis.hull_min - square_max);
     }
     return distance;
   }
@@ -161,6 +143,11 @@ class PlainBox {
   }
 
  private:
+  // A unit vector along which the hull and a square may lie apart, and where the hull begins along it.
+  struct Axis {
+    double nx, ny, hull_min;
+  };
+
   // Of one axis, its position relative to the eye.
   std::optional<double> seenFace(int axis) const {
     const double low = static_cast<double>(box_.min[axis]) - view_.eye[axis];
@@ -195,9 +182,33 @@ class PlainBox {
     }
   }
 
+  void makeAxes() {
+    for (const auto& [nx, ny] :
+         {std::pair(1.0, 0.0), std::pair(-1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.0, -1.0)}) {
+      addAxis(nx, ny);
+    }
+    for (std::size_t i = 0; i < hull_.size(); ++i) {
+      const Place &a = hull_[i], &b = hull_[(i + 1) % hull_.size()];
+      addAxis(a.y - b.y, b.x - a.x);
+      addAxis(b.y - a.y, a.x - b.x);
+    }
+  }
+  void addAxis(double nx, double ny) {
+    const double length = std::hypot(nx, ny);
+    if (length == 0.0) {
+      return;
+    }
+    Axis axis{nx / length, ny / length, INFINITY};
+    for (const Place& p : hull_) {
+      axis.hull_min = std::min(axis.hull_min, axis.nx * p.x + axis.ny * p.y);
+    }
+    axes_.push_back(axis);
+  }
+
   const PixelView& view_;
   Box box_;
   std::vector<Place> corners_, hull_;
+  std::vector<Axis> axes_;
 };
 
 struct Bed {
@@ -239,16 +250,26 @@ struct Bed {
   PixelBox image;
 };
 
+// What is known of one pixel of the box's rectangle by itself.
+struct PlainPixel {
+  double distance;  // from the hull, pixels
+  double own;       // the box's reciprocal depth in it
+};
+
 // Draws into the buffer what is a little nearer than the box in every pixel that its outline intersects, and
-// nothing (or something farther) elsewhere; then opens some pixels.
-void drawAround(Bed& bed, const PlainBox& plain, int opened) {
+// nothing (or something farther) elsewhere; then opens some pixels. Returns the pixels of the box's
+// rectangle, row by row.
+std::vector<PlainPixel> drawAround(Bed& bed, const PlainBox& plain, int opened) {
+  std::vector<PlainPixel> pixels;
+  const double tolerance = bed.pixelTolerance();
   const double range = std::abs(static_cast<double>(bed.image.nearest) - bed.image.farthest);
   const double ahead =
       bed.random.sized(1e-4, 0.3) * range + 1e-4 * std::abs(static_cast<double>(bed.image.nearest));
   for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
     for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
-      if (plain.distanceTo(x, y) < bed.pixelTolerance()) {
-        const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
+      const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
+      pixels.push_back({plain.distanceTo(x, y), own});
+      if (pixels.back().distance < tolerance) {
         bed.buffer.at(x, y) = static_cast<float>(own + ahead);
       }
     }
@@ -261,6 +282,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
     const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
     bed.buffer.at(x, y) = bed.random.below(2) == 0 ? kUncovered : static_cast<float>(own - ahead);
   }
+  return pixels;
 }
 
 TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
@@ -273,13 +295,14 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
       continue;
     }
     const PlainBox plain(bed.view, bed.box);
-    drawAround(bed, plain, static_cast<int>(bed.random.below(3)));
+    const std::vector<PlainPixel> pixels = drawAround(bed, plain, static_cast<int>(bed.random.below(3)));
+    auto pixel = pixels.begin();
     bool surely_open = false, maybe_open = false, before = false, rectangle_hides = true;
     const double tolerance = bed.pixelTolerance();
     for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
       for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
-        const double at = bed.buffer.at(x, y), distance = plain.distanceTo(x, y);
-        const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
+        const double at = bed.buffer.at(x, y);
+        const auto [distance, own] = *pixel++;
         const double slack = 2e-5 * std::abs(own);
         surely_open |= distance < -tolerance && at <= own - slack;
         maybe_open |= distance < tolerance && at <= own + slack;
