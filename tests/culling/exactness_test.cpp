@@ -13,7 +13,8 @@ namespace {
 
 using namespace demo_frames;
 
-// Takes a few consecutive frames at several places of each camera path, with a jump from place to place.
+// Takes a few consecutive frames at several places of each camera path, with a jump from place to place. At
+// every third place the views are orthographic.
 void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
   Judge judge(demo);
   places = test::rounds(places);
@@ -21,7 +22,9 @@ void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
     for (std::size_t place = 0; place < places; ++place) {
       const std::size_t first = path.frames.size() * place / places;
       std::size_t frame = first;
-      for (const View& view : demo.frames(path, first, steady)) {
+      for (View view : demo.frames(path, first, steady)) {
+        view.orthographic = place % 3 == 2;
+        view.ortho_height = 12.0;
         judge.judge(view, "walk " + path.name + " frame " + std::to_string(frame++));
       }
     }

@@ -17,24 +17,24 @@ struct NamedCuller {
   AnyCuller culler;
 };
 
-// Makes cullers with all structures and hierarchies, with and without temporal coherence, with few and many
-// occluders; and cullers with occluders from the database and the second test of detail objects.
+// Makes cullers with all structures and hierarchies, with and without temporal coherence; and cullers with
+// occluders from the database and the second test of detail objects. Structures without joint occlusion are
+// left out: they hide nothing that those with it do not hide (TwoForms), and those are judged.
 inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   std::vector<NamedCuller> cullers;
   const auto add = [&](std::string name, HierarchyKind kind, const AnySettings& settings) {
-    name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent " : " incoherent ") +
-            std::to_string(settings.occluder_count) + " occluders";
+    name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent" : " incoherent");
     cullers.push_back({std::move(name), demo.culler(kind, settings)});
   };
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& structure : kStructures) {
+      AnySettings settings = structure.settings;
+      if (!settings.supporting_planes.joint_occlusion || !settings.kept_planes.joint_occlusion) {
+        continue;
+      }
       for (const bool coherence : {true, false}) {
-        for (const std::uint32_t count : {8u, 64u}) {
-          AnySettings settings = structure.settings;
-          settings.occluder_count = count;
-          settings.temporal_coherence = coherence;
-          add(structure.name, kind, settings);
-        }
+        settings.temporal_coherence = coherence;
+        add(structure.name, kind, settings);
       }
     }
     for (const NamedSettings& method : kMethods) {
