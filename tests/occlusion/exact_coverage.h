@@ -9,6 +9,7 @@
 // Camera space: x to the right, y upwards, z the depth. Buffer space: pixels, the lower left corner at (0,
 // 0), y upwards. A point of the buffer is (x, y, w), meaning (x / w, y / w), with w > 0.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -386,6 +387,19 @@ inline std::vector<Surface> surfacesOf(const Camera& camera, std::span<const Pol
 }
 
 inline bool covers(const Surface& surface, const Part& where) {
+  // Most parts have a corner that no image contains, or lie in one image.
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    const Triple point = corner(where, i);
+    const auto is_in = [&](const Image& image) {
+      return std::ranges::all_of(image.part, [&](const Triple& line) { return dot(line, point) >= 0; });
+    };
+    if (std::ranges::none_of(surface.images, is_in)) {
+      return false;
+    }
+  }
+  if (std::ranges::any_of(surface.images, [&](const Image& image) { return contains(image.part, where); })) {
+    return true;
+  }
   std::vector<Part> parts;
   for (const Image& image : surface.images) {
     parts.push_back(image.part);
