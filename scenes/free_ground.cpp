@@ -6,11 +6,12 @@
 namespace sightline::scenes {
 namespace {
 
-double distanceToLeg(Point2 p, Point2 a, Point2 b) {
+double squareToLeg(Point2 p, Point2 a, Point2 b) {
   const Point2 d = b - a;
   const double square = dot(d, d);
   const double t = square > 0.0 ? std::clamp(dot(p - a, d) / square, 0.0, 1.0) : 0.0;
-  return length(p - (a + d * t));
+  const Point2 between = p - (a + d * t);
+  return dot(between, between);
 }
 
 // True if a side of the first footprint separates the two.
@@ -37,11 +38,11 @@ bool overlaps(const Footprint& a, const Footprint& b) {
 }
 
 double distanceToLine(Point2 p, std::span<const Vec3d> line) {
-  double nearest = 1e30;
+  double nearest = 1e60;  // square of the distance: one root for all legs
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    nearest = std::min(nearest, distanceToLeg(p, {line[i].x, line[i].y}, {line[i + 1].x, line[i + 1].y}));
+    nearest = std::min(nearest, squareToLeg(p, {line[i].x, line[i].y}, {line[i + 1].x, line[i + 1].y}));
   }
-  return nearest;
+  return std::sqrt(nearest);
 }
 
 void FreeGround::keepLine(std::span<const Vec3d> line, double half_width) {
@@ -71,7 +72,12 @@ bool FreeGround::isFree(const Footprint& footprint) const {
   }
   // Points in steps of less than a metre stand for the whole rectangle.
   const auto steps = static_cast<int>(2.0 * std::max(footprint.half_length, footprint.half_width)) + 2;
+  const double half_diagonal = length(Point2{footprint.half_length, footprint.half_width});
   for (const Line& line : lines_) {
+    // No point is nearer to the line than the middle by more than half the diagonal.
+    if (distanceToLine(footprint.middle, line.points) > line.half_width + half_diagonal + 1e-6) {
+      continue;
+    }
     for (int i = 0; i <= steps; ++i) {
       for (int k = 0; k <= steps; ++k) {
         const Point2 p = footprint.at(2.0 * i / steps - 1.0, 2.0 * k / steps - 1.0);

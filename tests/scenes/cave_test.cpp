@@ -24,15 +24,15 @@ TEST(Cave, IsInOrder) {
 
 TEST(Cave, TheDefaultOneHasManyThingsInManyPieces) {
   const Scene scene = makeCave({});
-  const SheetCounts rock = countSheet(scene, "rock ");
-  EXPECT_GT(rock.objects, 100u);
-  EXPECT_GE(scene.objects.size(), rock.objects + 800);
+  const std::size_t rocks = countNamed(scene, "rock ").objects;
+  EXPECT_GT(rocks, 100u);
+  EXPECT_GE(scene.objects.size(), rocks + 800);
   EXPECT_LE(scene.objects.size(), 8000u);
 }
 
 TEST(Cave, TheRockHasAboutAsManyTrianglesAsAskedFor) {
   for (const std::uint32_t triangles : {10000u, 30000u, test::rounds(300000u)}) {
-    const SheetCounts rock = countSheet(makeCave({.triangles = triangles}), "rock ");
+    const NamedCounts rock = countNamed(makeCave({.triangles = triangles}), "rock ");
     EXPECT_NEAR(static_cast<double>(rock.triangles), triangles, 0.2 * triangles);
   }
 }

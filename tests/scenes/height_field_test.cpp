@@ -50,9 +50,11 @@ TEST(HeightField, OutsideOfTheAreaTheHeightIsThatOfTheBorder) {
 
 TEST(HeightField, TilesAreOneSheetEvenIfTheyDiffer) {
   for (const std::uint32_t quads : {8u, 13u, 30u}) {
-    const SheetCounts sheet = countSheet(drawn(rough(quads, 5), 4), "tile ");
-    EXPECT_EQ(sheet.objects, 16u);
-    EXPECT_EQ(sheet.triangles, 2 * quads * quads);
+    const Scene scene = drawn(rough(quads, 5), 4);
+    const NamedCounts tiles = countNamed(scene, "tile ");
+    EXPECT_EQ(tiles.objects, 16u);
+    EXPECT_EQ(tiles.triangles, 2 * quads * quads);
+    const SheetCounts sheet = countSheet(scene, "tile ");
     EXPECT_EQ(sheet.open_edges, 4 * quads);
     EXPECT_EQ(sheet.pieces, 1u);
   }

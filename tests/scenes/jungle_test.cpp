@@ -63,7 +63,7 @@ TEST(Jungle, EverythingButGroundAndLeavesIsASolidWithItsFrontsOutside) {
   const Scene scene = makeJungle({.seed = 4});
   const std::size_t leaves = countSeeThrough(scene);
   const SolidCounts solids = countSolids(scene);
-  EXPECT_EQ(solids.closed, scene.objects.size() - leaves - countSheet(scene, "ground ").objects);
+  EXPECT_EQ(solids.closed, scene.objects.size() - leaves - countNamed(scene, "ground ").objects);
   EXPECT_EQ(solids.inside_out, 0u);
 }
 

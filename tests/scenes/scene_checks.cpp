@@ -4,10 +4,11 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <map>
+#include <span>
 #include <utility>
 
 #include "sightline/scene/check_scene.h"
+#include "src/base/union_find.h"
 
 namespace sightline::scene_checks {
 namespace {
@@ -80,6 +81,37 @@ Box boxAround(const Vec3d& a, const Vec3d& b, double margin) {
   return box;
 }
 
+// The edges of triangles. Each is a number of its two vertices and its direction, so that sorting brings
+// those between the same vertices together.
+class Edges {
+ public:
+  void add(const Scene& scene, const Object& object) {
+    for (std::uint32_t i = 0; i < object.index_count; ++i) {
+      const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const std::uint64_t a = scene.indices[object.first_index + i],
+                          b = scene.indices[object.first_index + next];
+      edges_.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0 : 1));
+    }
+  }
+  // Calls look(forwards, backwards) for each pair of vertices: how many triangles have the edge in either
+  // direction.
+  template <typename Look>
+  void forEach(Look&& look) {
+    std::sort(edges_.begin(), edges_.end());
+    for (std::size_t i = 0; i < edges_.size();) {
+      std::array<std::size_t, 2> count{};
+      for (const std::uint64_t vertices = edges_[i] >> 1; i < edges_.size() && edges_[i] >> 1 == vertices;
+           ++i) {
+        ++count[edges_[i] & 1];
+      }
+      look(count[0], count[1]);
+    }
+  }
+
+ private:
+  std::vector<std::uint64_t> edges_;
+};
+
 }  // namespace
 
 std::uint64_t hashOf(const Scene& scene) {
@@ -139,14 +171,11 @@ double degenerateShare(const Scene& scene) {
 }
 
 bool isClosed(const Scene& scene, const Object& object) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
-  for (std::uint32_t i = 0; i < object.index_count; ++i) {
-    const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
-    const std::uint32_t a = scene.indices[object.first_index + i],
-                        b = scene.indices[object.first_index + next];
-    balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-  }
-  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+  Edges edges;
+  edges.add(scene, object);
+  bool closed = true;
+  edges.forEach([&](std::size_t forwards, std::size_t backwards) { closed &= forwards == backwards; });
+  return closed;
 }
 
 double volumeOf(const Scene& scene, const Object& object) {
@@ -199,40 +228,40 @@ std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view e
   return found;
 }
 
+NamedCounts countNamed(const Scene& scene, std::string_view start) {
+  NamedCounts counts;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    if (scene.object_names[o].starts_with(start)) {
+      ++counts.objects;
+      counts.triangles += scene.objects[o].triangleCount();
+    }
+  }
+  return counts;
+}
+
 SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_name) {
   SheetCounts counts;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // forwards, backwards
-  std::map<std::uint32_t, std::uint32_t> parent;
-  const auto rootOf = [&](std::uint32_t at) {
-    parent.try_emplace(at, at);
-    while (parent[at] != at) {
-      at = parent[at] = parent[parent[at]];
-    }
-    return at;
-  };
+  Edges edges;
+  base::UnionFind pieces(scene.positions.size());
+  std::vector<bool> used(scene.positions.size(), false);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const std::string& name = scene.object_names[o];
-    if (name.compare(0, start.size(), start) != 0 || (whole_name && name.size() != start.size())) {
+    if (!name.starts_with(start) || (whole_name && name.size() != start.size())) {
       continue;
     }
-    ++counts.objects;
-    counts.triangles += scene.objects[o].triangleCount();
-    for (std::uint32_t i = 0; i < scene.objects[o].index_count; ++i) {
-      const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
-      const std::uint32_t a = scene.indices[scene.objects[o].first_index + i],
-                          b = scene.indices[scene.objects[o].first_index + next];
-      auto& [forwards, backwards] = edges[{std::min(a, b), std::max(a, b)}];
-      ++(a < b ? forwards : backwards);
-      const std::uint32_t root = rootOf(a);
-      parent[root] = rootOf(b);
+    edges.add(scene, scene.objects[o]);
+    const std::span<const std::uint32_t> indices = scene.view().indicesOf(scene.objects[o]);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      used[indices[i]] = true;
+      pieces.unite(indices[i], indices[i - i % 3]);
     }
   }
-  for (const auto& [edge, count] : edges) {
-    counts.open_edges += count.first != count.second ? 1 : 0;
-    counts.crowded_edges += count.first + count.second > 2 ? 1 : 0;
-  }
-  for (const auto& [at, above] : parent) {
-    counts.pieces += at == above ? 1 : 0;
+  edges.forEach([&](std::size_t forwards, std::size_t backwards) {
+    counts.open_edges += forwards != backwards ? 1 : 0;
+    counts.crowded_edges += forwards + backwards > 2 ? 1 : 0;
+  });
+  for (std::uint32_t i = 0; i < used.size(); ++i) {
+    counts.pieces += used[i] && pieces.root(i) == i ? 1 : 0;
   }
   return counts;
 }

@@ -43,10 +43,15 @@ std::size_t countSeeThrough(const Scene& scene);
 // Objects whose name ends with `end`.
 std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view end);
 
-// The objects whose names begin with `start` (or are it, if whole_name), taken together.
-struct SheetCounts {
+// The objects whose names begin with `start`.
+struct NamedCounts {
   std::size_t objects = 0;
   std::uint64_t triangles = 0;
+};
+NamedCounts countNamed(const Scene& scene, std::string_view start);
+
+// The objects whose names begin with `start` (or are it, if whole_name), taken together.
+struct SheetCounts {
   std::uint64_t open_edges = 0;     // edges without as many triangles in one direction as in the other
   std::uint64_t crowded_edges = 0;  // edges of more than two triangles
   std::size_t pieces = 0;           // sets of triangles that hang together by shared positions

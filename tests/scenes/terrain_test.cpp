@@ -27,7 +27,7 @@ TEST(Terrain, TheGroundHasAboutAsManyTrianglesAsAskedForAndNothingElseChanges) {
   const auto others = static_cast<double>(makeTerrain({}).objects.size());
   for (const std::uint32_t triangles : {10000u, 20000u, 300000u}) {
     const Scene scene = makeTerrain({.triangles = triangles});
-    const SheetCounts ground = countSheet(scene, "ground ");
+    const NamedCounts ground = countNamed(scene, "ground ");
     EXPECT_NEAR(static_cast<double>(ground.triangles), triangles, 0.02 * triangles);
     EXPECT_EQ(ground.objects, 256u);
     EXPECT_NEAR(static_cast<double>(scene.objects.size()), others, 0.1 * others);
@@ -37,8 +37,9 @@ TEST(Terrain, TheGroundHasAboutAsManyTrianglesAsAskedForAndNothingElseChanges) {
 TEST(Terrain, TheTilesAreOneSheetWithoutGaps) {
   const Scene scene = makeTerrain({.triangles = 30000});
   const SheetCounts ground = countSheet(scene, "ground ");
+  const std::uint64_t triangles = countNamed(scene, "ground ").triangles;
   const auto quads_per_side =
-      static_cast<std::uint64_t>(std::lround(std::sqrt(static_cast<double>(ground.triangles / 2))));
+      static_cast<std::uint64_t>(std::lround(std::sqrt(static_cast<double>(triangles / 2))));
   EXPECT_EQ(ground.open_edges, 4 * quads_per_side);
   EXPECT_EQ(ground.pieces, 1u);
 }
