@@ -9,7 +9,6 @@
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/opacity_map_method.h"
-#include "sightline/occluders/surface_set.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/support/count_allocations.h"
@@ -79,11 +78,10 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
 // More objects are in view than are looked at after a jump before anything is hidden.
 TEST(Allocations, DoNotHappenWithSurfacesAlsoAfterAJump) {
   const DemoScene city(makeBoxCity({.buildings = 1500, .boxes = 4500}));
-  const SurfaceSet surfaces = findSurfaces(city.scene.view());
   const CullingScene scene{.hierarchy = &city.bvh,
                            .object_bounds = city.bounds,
-                           .object_boxes = &city.object_boxes,
-                           .surfaces = &surfaces};
+                           .object_boxes = &city.objectBoxes(),
+                           .surfaces = &city.surfaces()};
   const std::vector<View> views = city.frames(city.scene.paths[1], 0, 20);
   using MakeMethod = std::unique_ptr<CullingMethod> (*)();
   const MakeMethod methods[] = {[] { return depthPyramid(); },
@@ -107,11 +105,10 @@ TEST(Allocations, DoNotHappenWithSurfacesAlsoAfterAJump) {
 // A slow walk, in which most frames hold the answer of another, with a jump in it.
 TEST(Allocations, DoNotHappenWithSeveralViewsAtOnce) {
   const DemoScene& demo = smallCity();
-  const SurfaceSet surfaces = findSurfaces(demo.scene.view());
   const CullingScene scene{.hierarchy = &demo.bvh,
                            .object_bounds = demo.bounds,
-                           .object_boxes = &demo.object_boxes,
-                           .surfaces = &surfaces};
+                           .object_boxes = &demo.objectBoxes(),
+                           .surfaces = &demo.surfaces()};
   std::vector<View> views;
   for (View view : demo.frames(demo.scene.paths[0], 40, 2)) {
     for (int frame = 0; frame < 20; ++frame) {
@@ -176,8 +173,7 @@ TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       members.push_back(fake_sets::randomMembers(sets.boxes(), random));
     }
-    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, {&demo.database, &demo.detail_database},
-                     &sets);
+    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, demo.listsFor(settings), &sets);
     std::size_t counted = 0;
     for (int round = 0; round < 3; ++round) {
       counted = 0;

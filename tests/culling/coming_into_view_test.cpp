@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <vector>
+#include <utility>
 
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/opacity_map_method.h"
-#include "sightline/hierarchy/hierarchy.h"
-#include "sightline/occluders/surface_set.h"
+#include "tests/culling/culled_scene.h"
 #include "tests/oracle/hand_made.h"
 
 namespace sightline::culling {
@@ -27,15 +26,9 @@ TEST(ComingIntoView, AWallBehindAWallHidesAsSoonAsTheEyeIsPastTheFirstOne) {
     const auto x = static_cast<float>(i % 10), y = static_cast<float>(i / 10);
     addWall(scene, stone, -20.0f - x, x - 5.0f, x - 4.5f, y - 5.0f, y - 4.5f);
   }
-  std::vector<Box> bounds;
-  for (const Object& object : scene.objects) {
-    bounds.push_back(object.bounds);
-  }
-  const Hierarchy hierarchy = buildHierarchy(bounds, {});
-  const SurfaceSet surfaces = findSurfaces(scene.view());
-  const CullingScene culling_scene{.hierarchy = &hierarchy, .object_bounds = bounds, .surfaces = &surfaces};
+  const CulledScene culled(std::move(scene));
   for (const bool pyramid : {false, true}) {
-    Culler culler(culling_scene, pyramid ? depthPyramid() : opacityMap({.surfaces = SurfaceUse::kAlone}));
+    Culler culler(culled.parts(), pyramid ? depthPyramid() : opacityMap({.surfaces = SurfaceUse::kAlone}));
     View view = hand_made::frontView();
     for (int step = 0; step < 5; ++step) {
       view.eye.z = -0.5 * step;

@@ -2,6 +2,7 @@
 
 // Demo scenes prepared for culling, and views of them.
 
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
@@ -50,14 +51,27 @@ inline std::vector<NamedSettings> oneOfEachMethod() {
 }
 inline const std::vector<NamedSettings> kMethods = oneOfEachMethod();
 
+// What many tests do not need: it is made when it is first asked for, by one thread at a time.
+template <typename T>
+class OnFirstUse {
+ public:
+  template <typename Make>
+  const T& get(Make&& make) const {
+    if (!value_) {
+      value_.emplace(make());
+    }
+    return *value_;
+  }
+
+ private:
+  mutable std::optional<T> value_;
+};
+
 struct DemoScene {
   Scene scene;
   std::vector<Box> bounds;
   Hierarchy kd_tree, bvh;
   OccluderSet occluders;
-  OccluderDatabase database, detail_database;  // coarse
-  SurfaceSet surfaces;
-  ObjectBoxes object_boxes;
 
   explicit DemoScene(Scene source) : scene(std::move(source)) {
     std::vector<std::uint32_t> triangles;
@@ -68,22 +82,31 @@ struct DemoScene {
     kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
     bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
     occluders = findOccluders(scene.view());
-    surfaces = findSurfaces(scene.view());
-    object_boxes = findObjectBoxes(scene.view());
-    OccluderDatabaseSettings coarse{.directions = 16, .occluder_count = 128, .max_bytes = 1u << 20};
-    database = OccluderDatabase::build(kd_tree, occluders, coarse);
-    coarse.turned_away = true;
-    detail_database = OccluderDatabase::build(kd_tree, occluders, coarse);
+  }
+  const OccluderDatabase& database() const {
+    return database_.get([&] { return coarseDatabase(false); });
+  }
+  const OccluderDatabase& detailDatabase() const {
+    return detail_database_.get([&] { return coarseDatabase(true); });
+  }
+  const SurfaceSet& surfaces() const {
+    return surfaces_.get([&] { return findSurfaces(scene.view()); });
+  }
+  const ObjectBoxes& objectBoxes() const {
+    return object_boxes_.get([&] { return findObjectBoxes(scene.view()); });
   }
   const Hierarchy& hierarchy(HierarchyKind kind) const {
     return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
   }
   AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
-    return AnyCuller(hierarchy(kind), bounds, occluders, settings,
-                     {.from_eye = &database,
-                      .from_objects = &detail_database,
-                      .surfaces = &surfaces,
-                      .object_boxes = &object_boxes});
+    return AnyCuller(hierarchy(kind), bounds, occluders, settings, listsFor(settings));
+  }
+  // What of the scene a culler with these settings uses.
+  AnyLists listsFor(const AnySettings& settings) const {
+    return {.from_eye = settings.use_lists ? &database() : nullptr,
+            .from_objects = settings.detail_objects ? &detailDatabase() : nullptr,
+            .surfaces = settings.surfaces != SurfaceUse::kNone ? &surfaces() : nullptr,
+            .object_boxes = settings.object_boxes ? &objectBoxes() : nullptr};
   }
   // Returns the views of frames first, first + 1, ... of a camera path; fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {
@@ -93,6 +116,17 @@ struct DemoScene {
     }
     return views;
   }
+
+ private:
+  OccluderDatabase coarseDatabase(bool turned_away) const {
+    return OccluderDatabase::build(
+        kd_tree, occluders,
+        {.directions = 16, .occluder_count = 128, .max_bytes = 1u << 20, .turned_away = turned_away});
+  }
+
+  OnFirstUse<OccluderDatabase> database_, detail_database_;
+  OnFirstUse<SurfaceSet> surfaces_;
+  OnFirstUse<ObjectBoxes> object_boxes_;
 };
 
 inline const DemoScene& smallCity() {

@@ -11,34 +11,13 @@
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/opacity_map_method.h"
-#include "sightline/occluders/surface_set.h"
+#include "tests/culling/culled_scene.h"
 #include "tests/oracle/hand_made.h"
 
 namespace sightline {
 namespace {
 
 using namespace hand_made;
-
-struct CulledScene {
-  Scene scene;
-  std::vector<Box> bounds;
-  Hierarchy hierarchy;
-  OccluderSet occluders;
-  SurfaceSet surfaces;
-
-  explicit CulledScene(Scene made) : scene(std::move(made)) {
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-    }
-    hierarchy = buildHierarchy(bounds, {});
-    occluders = findOccluders(scene.view());
-    surfaces = findSurfaces(scene.view());
-  }
-
-  CullingScene parts() const {
-    return {.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders, .surfaces = &surfaces};
-  }
-};
 
 // Two walls before the eye: one straight ahead, one to the right, beyond the border of frontView().
 CulledScene twoWalls() {

@@ -8,8 +8,7 @@
 #include "scenes/procedural.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
-#include "sightline/hierarchy/hierarchy.h"
-#include "sightline/occluders/surface_set.h"
+#include "tests/culling/culled_scene.h"
 #include "tests/oracle/hand_made.h"
 
 namespace sightline::culling {
@@ -17,23 +16,6 @@ namespace {
 
 using hand_made::addMaterial;
 using hand_made::addWall;
-
-// A scene and what a culler needs of it.
-struct Prepared {
-  explicit Prepared(const Scene& scene) : surfaces(findSurfaces(scene.view())) {
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-    }
-    hierarchy = buildHierarchy(bounds, {});
-  }
-  CullingScene scene() const {
-    return {.hierarchy = &hierarchy, .object_bounds = bounds, .surfaces = &surfaces};
-  }
-
-  std::vector<Box> bounds;
-  Hierarchy hierarchy;
-  SurfaceSet surfaces;
-};
 
 TEST(HidingSurfaces, AWallIsDrawnAndWhatStandsBeforeItIsNot) {
   Scene scene;
@@ -48,8 +30,8 @@ TEST(HidingSurfaces, AWallIsDrawnAndWhatStandsBeforeItIsNot) {
     const auto x = static_cast<float>(i % 10), y = static_cast<float>(i / 10);
     addWall(scene, stone, -20.0f - x, x - 5.0f, x - 4.5f, y - 5.0f, y - 4.5f);
   }
-  const Prepared prepared(scene);
-  Culler culler(prepared.scene(), depthPyramid({.focus = {.windows = 0}}));
+  const CulledScene culled(scene);
+  Culler culler(culled.parts(), depthPyramid({.focus = {.windows = 0}}));
   View view = hand_made::frontView();
   culler.cull(view);
   EXPECT_GT(culler.statistic("surfaces", "groups"), kPanels) << "nothing is known in the first view";
@@ -95,8 +77,8 @@ TEST(HidingSurfaces, WhatComesToBeHiddenIsFound) {
                     y = -8.0f + 2.0f * static_cast<float>(i / 5);
         addWall(scene, stone, -80.0f - 0.01f * static_cast<float>(i), x, x + 0.5f, y, y + 1.5f);
       }
-      const Prepared prepared(scene);
-      Culler culler(prepared.scene(), depthPyramid({.focus = {.windows = 0}}));
+      const CulledScene culled(scene);
+      Culler culler(culled.parts(), depthPyramid({.focus = {.windows = 0}}));
       View view = hand_made::frontView();
       culler.cull(view);
       EXPECT_GT(culler.visible().size(), 2u);
@@ -116,9 +98,9 @@ TEST(HidingSurfaces, WhatComesToBeHiddenIsFound) {
 TEST(HidingSurfaces, AFastTurnKeepsAboutWhatAViewAloneKeeps) {
   const Result<Scene> scene = makeDemoScene("demo:building");
   ASSERT_TRUE(scene.has_value());
-  const Prepared prepared(*scene);
-  Culler culler(prepared.scene(), depthPyramid());
-  Culler alone(prepared.scene(), depthPyramid({.temporal_coherence = false}));
+  const CulledScene culled(*scene);
+  Culler culler(culled.parts(), depthPyramid());
+  Culler alone(culled.parts(), depthPyramid({.temporal_coherence = false}));
   const CameraPath& path = scene->paths[0];
   std::size_t kept = 0, kept_alone = 0;
   for (std::size_t frame = 0; frame < path.frames.size(); frame += 10) {

@@ -52,12 +52,19 @@ Scene movedCity(std::uint32_t copies, const Vec3f& by) {
   return scene;
 }
 
+AnyLists databasesOf(const DemoScene& demo) {
+  return {&demo.database(), &demo.detailDatabase()};
+}
+
+// Their databases are made at once, so that copies have them too.
 const DemoScene& oneCopy() {
   static const DemoScene kScene(makeCity({.copies = 1}));
+  databasesOf(kScene);
   return kScene;
 }
 const DemoScene& oneCopyMoved() {
   static const DemoScene kScene(movedCity(1, {25, 0, 13}));
+  databasesOf(kScene);
   return kScene;
 }
 
@@ -68,13 +75,14 @@ struct LiveScene {
 
   explicit LiveScene(const DemoScene& first) : demo(first) { makeSets(); }
   void become(const DemoScene& other) {
+    databasesOf(other);
     demo = other;
     makeSets();
   }
   AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
     return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings, databases(), sets.get());
   }
-  AnyLists databases() const { return {&demo.database, &demo.detail_database}; }
+  AnyLists databases() const { return databasesOf(demo); }
 
  private:
   void makeSets() {
@@ -281,8 +289,7 @@ TEST(Culler, ADatabaseOfOtherOccludersHidesNothingWrongly) {
     AnySettings settings = method.settings;
     settings.use_lists = true;
     settings.detail_objects = true;
-    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings,
-                     {&smallCity().database, &smallCity().detail_database});
+    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, databasesOf(smallCity()));
     for (const View& view : demo.frames(demo.scene.paths[0], 60, 4)) {
       const Objects visible = visibleOf(culler, view);
       EXPECT_FALSE(culler.stats().unfit);

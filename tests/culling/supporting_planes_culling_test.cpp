@@ -114,15 +114,15 @@ std::vector<View> restlessViews(const DemoScene& demo, std::uint64_t seed) {
 }
 
 // What a culler said of its last view, and how much it tested for that.
-struct Answer {
+struct AnswerAndWork {
   std::vector<ObjectId> visible;
   std::uint64_t nodes_tested, objects_tested;
 
-  explicit Answer(const AnyCuller& culler)
+  explicit AnswerAndWork(const AnyCuller& culler)
       : visible(culler.visible().begin(), culler.visible().end()),
         nodes_tested(culler.stats().nodes_tested),
         objects_tested(culler.stats().objects_tested) {}
-  bool operator==(const Answer&) const = default;
+  bool operator==(const AnswerAndWork&) const = default;
 };
 
 class OnDemoScenes : public testing::TestWithParam<const DemoScene& (*)()> {
@@ -157,7 +157,7 @@ TEST_P(KeptRelations, ChangeNoAnswerWithTheDatabaseAndTheSecondTest) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       with.cull(views[i]);
       without.cull(views[i]);
-      EXPECT_TRUE(Answer(with) == Answer(without)) << nameOf(kind) << ", view " << i;
+      EXPECT_TRUE(AnswerAndWork(with) == AnswerAndWork(without)) << nameOf(kind) << ", view " << i;
     }
   }
 }
@@ -172,7 +172,7 @@ TEST_P(KeptRelations, ChangeNoAnswerAndStayWithinTheirRoomInEveryFrame) {
   const std::vector<View> views = restlessViews(demo(), 31);
   for (const HierarchyKind kind : kKinds) {
     AnyCuller without = demo().culler(kind, throughBox(false));
-    std::vector<Answer> expected;
+    std::vector<AnswerAndWork> expected;
     for (const View& view : views) {
       without.cull(view);
       expected.emplace_back(without);
@@ -184,7 +184,7 @@ TEST_P(KeptRelations, ChangeNoAnswerAndStayWithinTheirRoomInEveryFrame) {
       std::size_t evicted = 0;
       for (std::size_t i = 0; i < views.size(); ++i) {
         with.cull(views[i]);
-        EXPECT_TRUE(Answer(with) == expected[i]) << where << ", view " << i;
+        EXPECT_TRUE(AnswerAndWork(with) == expected[i]) << where << ", view " << i;
         EXPECT_LE(with.statistic("relations", "bytes"), bytes + itemTableBytes(demo(), kind)) << where;
         evicted += with.statistic("relations", "evicted");
       }
@@ -415,7 +415,7 @@ TEST_P(DatabaseChoice, UsesTheListOfTheCellAndTheDirection) {
     std::size_t used = 0;
     for (const View& view : places(demo(), 20)) {
       culler.cull(view);
-      const std::span<const OccluderId> list = demo().database.find(view.eye, view.forward);
+      const std::span<const OccluderId> list = demo().database().find(view.eye, view.forward);
       EXPECT_LE(culler.occludersUsed().size(), 32u);
       for (const OccluderId id : culler.occludersUsed()) {
         EXPECT_NE(std::find(list.begin(), list.end(), id), list.end()) << method.name;

@@ -299,18 +299,17 @@ TEST(ViewsToCome, TheNearerThingsAreAndTheFasterTheCameraTheFewerViewsArePlanned
   EXPECT_EQ(held(1e6, 0.05), 16u);
 }
 
-// A demo scene, its surfaces, and what rays see of it.
+// A demo scene and what rays see of it.
 class SeenScene {
  public:
-  explicit SeenScene(const DemoScene& of)
-      : demo(of), surfaces(findSurfaces(of.scene.view())), exact(of.scene.view()) {}
+  explicit SeenScene(const DemoScene& of) : demo(of), exact(of.scene.view()) {}
 
   CullingScene culled() const {
     return {.hierarchy = &demo.bvh,
             .object_bounds = demo.bounds,
-            .object_boxes = &demo.object_boxes,
+            .object_boxes = &demo.objectBoxes(),
             .occluders = &demo.occluders,
-            .surfaces = &surfaces};
+            .surfaces = &demo.surfaces()};
   }
   Culler culler(std::uint32_t views_at_once, DepthPyramidMethodSettings settings = kAll) const {
     return Culler(culled(), depthPyramid(settings), {.views_at_once = views_at_once});
@@ -320,7 +319,6 @@ class SeenScene {
       .surfaces = SurfaceUse::kAlone,
       .drawing = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0}};
   const DemoScene& demo;
-  SurfaceSet surfaces;
   ExactVisibility exact;
 };
 

@@ -25,8 +25,8 @@ using kept_objects::Objects;
 using kept_objects::visibleOf;
 
 AnyCuller cullerWith(const DemoScene& demo, HierarchyKind kind, AnySettings settings, VisibleSets* sets) {
-  return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings,
-                   {&demo.database, &demo.detail_database}, sets);
+  return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings, demo.listsFor(settings),
+                   sets);
 }
 
 Objects within(const Objects& objects, const std::vector<bool>& members) {

@@ -12,7 +12,7 @@
 #include "sightline/culling/frustum_method.h"
 #include "sightline/culling/occlusion_tree_method.h"
 #include "sightline/culling/visibility_octree_method.h"
-#include "sightline/hierarchy/hierarchy.h"
+#include "tests/culling/culled_scene.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/oracle/hand_made.h"
 
@@ -21,35 +21,19 @@ namespace {
 
 using namespace hand_made;
 
-// A wall before the eye of frontView(), and small walls behind it.
-struct WallAndHidden {
-  static constexpr std::size_t kHidden = 50;
+constexpr std::size_t kHiddenWalls = 50;
 
+// A wall before the eye of frontView(), and kHiddenWalls small walls behind it.
+CulledScene wallAndHidden() {
   Scene scene;
-  std::vector<Box> bounds;
-  Hierarchy hierarchy;
-  OccluderSet occluders;
-  SurfaceSet surfaces;
-
-  WallAndHidden() {
-    const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
-    addWall(scene, material, -10.0f, -8.0f, 8.0f, -8.0f, 8.0f);
-    for (std::size_t i = 0; i < kHidden; ++i) {
-      const float x = -5.0f + 0.2f * static_cast<float>(i);
-      addWall(scene, material, -20.0f - 0.1f * static_cast<float>(i), x, x + 0.1f, -1.0f, 1.0f);
-    }
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-    }
-    hierarchy = buildHierarchy(bounds, std::vector<std::uint32_t>(bounds.size(), 2));
-    occluders = findOccluders(scene.view());
-    surfaces = findSurfaces(scene.view());
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
+  addWall(scene, material, -10.0f, -8.0f, 8.0f, -8.0f, 8.0f);
+  for (std::size_t i = 0; i < kHiddenWalls; ++i) {
+    const float x = -5.0f + 0.2f * static_cast<float>(i);
+    addWall(scene, material, -20.0f - 0.1f * static_cast<float>(i), x, x + 0.1f, -1.0f, 1.0f);
   }
-
-  CullingScene parts() const {
-    return {.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders, .surfaces = &surfaces};
-  }
-};
+  return CulledScene(std::move(scene));
+}
 
 std::unique_ptr<CullingMethod> anyMethod(bool pyramid) {
   return pyramid ? depthPyramid() : occlusionTree();
@@ -62,7 +46,7 @@ std::vector<ObjectId> visibleIn(const Culler& culler) {
 }
 
 TEST_P(WhileItPaysAny, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   for (const RendererCost cost : {RendererCost{1e6, 0.0}, RendererCost{0.0, 1e6}}) {
     Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), cost));
     Culler plain(scene.parts(), anyMethod(GetParam()));
@@ -73,7 +57,7 @@ TEST_P(WhileItPaysAny, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
       ASSERT_EQ(culler.statistic("renderer", "given_up"), 0u) << frame;
     }
     const std::size_t removed = scene.bounds.size() - culler.visible().size();
-    EXPECT_GT(removed, WallAndHidden::kHidden / 2);
+    EXPECT_GT(removed, kHiddenWalls / 2);
     // Two triangles an object.
     EXPECT_EQ(
         culler.statistic("renderer", "saved_us"),
@@ -82,7 +66,7 @@ TEST_P(WhileItPaysAny, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
 }
 
 TEST_P(WhileItPaysAny, WhereDrawingCostsNothingTheFrustumCulls) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), {1e-9, 0.0}));
   Culler frustum(scene.parts(), frustumCulling());
   int given_up = 0;
@@ -100,7 +84,7 @@ TEST_P(WhileItPaysAny, WhereDrawingCostsNothingTheFrustumCulls) {
       ASSERT_EQ(culler.depthBuffer().width, 0u) << frame;
       ASSERT_EQ(culler.stats().occluders, 0u) << frame;
     } else {
-      ASSERT_LT(culler.visible().size(), WallAndHidden::kHidden / 2) << frame;
+      ASSERT_LT(culler.visible().size(), kHiddenWalls / 2) << frame;
       ASSERT_EQ(culler.dynamicStates()[0], Visibility::kHidden) << frame;
     }
   }
@@ -109,7 +93,7 @@ TEST_P(WhileItPaysAny, WhereDrawingCostsNothingTheFrustumCulls) {
 }
 
 TEST_P(WhileItPaysAny, AfterAJumpTheMethodIsTriedAgain) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), {1e-9, 0.0}));
   int in_a_row = 0;
   for (int frame = 0; frame < 1000 && in_a_row < 60; ++frame) {
@@ -122,11 +106,11 @@ TEST_P(WhileItPaysAny, AfterAJumpTheMethodIsTriedAgain) {
   culler.cull(away);
   culler.cull(frontView());
   EXPECT_EQ(culler.statistic("renderer", "given_up"), 0u);
-  EXPECT_LT(culler.visible().size(), WallAndHidden::kHidden / 2);
+  EXPECT_LT(culler.visible().size(), kHiddenWalls / 2);
 }
 
 TEST_P(WhileItPaysAny, CostsThatAreNoNumbersCountAsNothing) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double us : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, -1.0, 1e300}) {
     Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), {us, us}));
@@ -138,7 +122,7 @@ TEST_P(WhileItPaysAny, CostsThatAreNoNumbersCountAsNothing) {
 }
 
 TEST_P(WhileItPaysAny, ASetThatChangesMeanwhileIsThatOfTheMethodToo) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   fake_sets::FakeSets sets(scene.bounds);
   CullingScene parts = scene.parts();
   parts.sets = &sets;
@@ -168,7 +152,7 @@ TEST_P(WhileItPaysAny, ASetThatChangesMeanwhileIsThatOfTheMethodToo) {
 }
 
 TEST(WhileItPays, WithoutAHierarchyEverythingIsKept) {
-  const WallAndHidden scene;
+  const CulledScene scene = wallAndHidden();
   CullingScene parts = scene.parts();
   parts.hierarchy = nullptr;
   Culler culler(parts, whileItPays(visibilityOctree(), {1e-9, 0.0}));

@@ -1,0 +1,40 @@
+#pragma once
+
+// A scene with all that an engine passes to a culler of it.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "sightline/culling/culler.h"
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/occluders/surface_set.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+struct CulledScene {
+  Scene scene;
+  std::vector<Box> bounds;
+  Hierarchy hierarchy;
+  OccluderSet occluders;
+  SurfaceSet surfaces;
+
+  explicit CulledScene(Scene made) : scene(std::move(made)) {
+    std::vector<std::uint32_t> triangles;
+    for (const Object& object : scene.objects) {
+      bounds.push_back(object.bounds);
+      triangles.push_back(object.triangleCount());
+    }
+    hierarchy = buildHierarchy(bounds, triangles);
+    occluders = findOccluders(scene.view());
+    surfaces = findSurfaces(scene.view());
+  }
+
+  CullingScene parts() const {
+    return {.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders, .surfaces = &surfaces};
+  }
+};
+
+}  // namespace sightline
