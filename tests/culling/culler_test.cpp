@@ -12,6 +12,7 @@
 
 #include "src/culling/object_bits.h"
 #include "tests/culling/demo_frames.h"
+#include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
 namespace {
@@ -414,13 +415,10 @@ TEST(Culler, OfASceneWithoutOccludersDoesFrustumCulling) {
 // A wall of 8 x 8 metres at z = -5, seen from the origin along -z.
 struct WallScene {
   std::vector<Box> bounds{{{-4, -4, -5}, {4, 4, -5}}};
-  OccluderSet occluders;
+  OccluderSet occluders = test::setOf(std::vector{test::wall(-4, 4, -4, 4, -5)});
   View view;
 
   WallScene() {
-    const std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
-    const OccluderPolygon wall[] = {{corners, false, ObjectId(0u)}};
-    occluders = makeOccluders(wall);
     setOrientation(view, {0, 0, -1}, {0, 1, 0});
     view.tan_half_fovy = 2.0;
     view.aspect = 1.0;

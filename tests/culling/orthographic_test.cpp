@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/culling/demo_frames.h"
+#include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
 namespace {
@@ -14,9 +15,7 @@ using namespace demo_frames;
 TEST(OrthographicCulling, HidesABoxBehindAWall) {
   const std::vector<Box> bounds{
       {{-4, -4, -5}, {4, 4, -5}}, {{-1, -1, -12}, {1, 1, -10}}, {{3, 3, -12}, {5, 5, -10}}};
-  const std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
-  const OccluderPolygon wall[] = {{corners, false, ObjectId(0u)}};
-  const OccluderSet occluders = makeOccluders(wall);
+  const OccluderSet occluders = test::setOf(std::vector{test::wall(-4, 4, -4, 4, -5)});
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.orthographic = true;

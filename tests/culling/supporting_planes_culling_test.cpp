@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/culling/ray_judge.h"
+#include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
 namespace {
@@ -278,7 +279,7 @@ TEST_P(KeptRelations, SaveLessTheFasterTheWalk) {
 struct RowScene {
   std::vector<Box> bounds{{{-4, -4, -5}, {4, 4, -5}}};
   Hierarchy hierarchy;
-  OccluderSet occluders;
+  OccluderSet occluders = test::setOf(std::vector{test::wall(-4, 4, -4, 4, -5)});
   View view;  // from the origin, along -z: the row is hidden in part
 
   RowScene() {
@@ -287,9 +288,6 @@ struct RowScene {
       bounds.push_back({{x, -1, -12}, {x + 1, 1, -10}});
     }
     hierarchy = buildHierarchy(bounds, {}, {.max_leaf_objects = 1});
-    const std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
-    const OccluderPolygon wall[] = {{corners, false, ObjectId(0u)}};
-    occluders = makeOccluders(wall);
     setOrientation(view, {0, 0, -1}, {0, 1, 0});
     view.tan_half_fovy = 10.0;
     view.aspect = 1.0;
