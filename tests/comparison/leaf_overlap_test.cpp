@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/comparison/made_extents.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::comparison {
 namespace {
@@ -46,9 +47,8 @@ TEST(LeafOverlap, IsThatOfThePairsOnEveryInstructionSet) {
       found += overlaps(table, query, part);
     }
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const std::uint32_t bits = overlapBits(testsOf(table, query), bounds.data(), kRows, count);
-      hwy::SetSupportedTargetsForTest(0);
       EXPECT_EQ(bits, expected) << "seed " << seed << ", " << hwy::TargetName(target);
     }
   }

@@ -12,6 +12,7 @@
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 #include "tests/support/solids.h"
 
@@ -478,9 +479,8 @@ TEST(BodyPolygons, HasTheSameBitsWithEveryInstructionSetHoweverTheWorkIsCutAndIn
         covered += std::bit_cast<float>(bits) > kUncovered ? 1 : 0;
       }
       for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
+        const test::ForcedInstructionSet forced(target);
         const std::vector<std::uint32_t> other = bitsOf(scene, set, chosen, serialFor);
-        hwy::SetSupportedTargetsForTest(0);
         EXPECT_TRUE(other == first) << scene.what << ", " << hwy::TargetName(target);
       }
       EXPECT_TRUE(bitsOf(scene, set, chosen, inPieces) == first) << scene.what << ", in pieces";

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/occlusion/random_views.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -111,9 +112,8 @@ TEST(ChainEdges, AreTheSameWithEveryInstructionSetAndInAnyCompany) {
     const std::vector<EdgeBits> all = edgesOf(set, view, 0, kChains);
     edges += all.size();
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       EXPECT_EQ(edgesOf(set, view, 0, kChains), all) << "view " << n << ", " << hwy::TargetName(target);
-      hwy::SetSupportedTargetsForTest(0);
     }
     // Where one of them is cut, all are projected one by one.
     std::vector<EdgeBits> alone;

@@ -11,6 +11,7 @@
 
 #include "src/occlusion/boxes/box_depth_test.h"
 #include "tests/occlusion/random_views.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 
 namespace sightline::occlusion {
@@ -56,10 +57,9 @@ TEST(DepthLevels, HoldTheMinimumAndTheMaximumOfEachBlock) {
       }
     }
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       DepthLevels levels;
       levels.build(buffer.view(), target == targets.front() ? ParallelFor(forCutRanges) : serialFor);
-      hwy::SetSupportedTargetsForTest(0);
       const std::span<const DepthLevel> all = levels.levels();
       ASSERT_FALSE(all.empty());
       EXPECT_LE(std::max(all.back().width, all.back().height), kBlock);
@@ -399,10 +399,9 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
       });
     };
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       std::vector<BoxAnswer> answers(boxes.size());
       testBoxes(levels.levels(), OutlineView(bed.view), boxes, images, answers);
-      hwy::SetSupportedTargetsForTest(0);
       EXPECT_TRUE(same(answers)) << hwy::TargetName(target) << ", seed " << seed;
     }
     std::vector<BoxAnswer> parts(boxes.size());

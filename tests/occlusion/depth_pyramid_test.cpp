@@ -12,6 +12,7 @@
 #include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/scene/pixel_view.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline {
 namespace {
@@ -288,10 +289,9 @@ TEST(DepthPyramid, ThreadsInstructionSetsAndBatchesChangeNothing) {
     pyramid.build(scene.view, set, all(set));
     pyramid.classify(boxes, first);
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       pyramid.build(scene.view, set, all(set), backwards);
       pyramid.classify(boxes, answers);
-      hwy::SetSupportedTargetsForTest(0);
       EXPECT_TRUE(std::ranges::equal(first, answers, same)) << hwy::TargetName(target) << ", seed " << seed;
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/instruction_sets.h"
+
 namespace sightline::occlusion {
 namespace {
 
@@ -73,9 +75,8 @@ TEST(EyePlanes, EveryInstructionSetGivesTheSameAnswers) {
     const EyeBox box = randomBox(random);
     const std::vector<EyePlaneTest> first = testAgainstEyePlanes(scene, box);
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const std::vector<EyePlaneTest> tests = testAgainstEyePlanes(scene, box);
-      hwy::SetSupportedTargetsForTest(0);
       ASSERT_EQ(tests.size(), first.size()) << hwy::TargetName(target);
       for (std::size_t i = 0; i < tests.size(); ++i) {
         EXPECT_EQ(tests[i].touches, first[i].touches) << hwy::TargetName(target);

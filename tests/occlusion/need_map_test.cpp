@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/random_numbers.h"
 
 namespace sightline::occlusion {
@@ -137,7 +138,7 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
       const std::uint32_t expected = bed.pixels(rectangle, level),
                           of_sloping = bed.pixels(rectangle, sloping);
       for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
+        const test::ForcedInstructionSet forced(target);
         bed.setNeeds();
         bed.look(random);
         EXPECT_EQ(bed.map.pixels(rectangle, nearest), expected) << n << ", " << hwy::TargetName(target);
@@ -146,7 +147,6 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
         nearer.comeNearer(changed);
         EXPECT_EQ(nearer.map.pixels(rectangle, nearest), nearer.pixels(rectangle, level))
             << n << ", " << hwy::TargetName(target);
-        hwy::SetSupportedTargetsForTest(0);
       }
       (expected > 0 ? needed : not_needed) += 1;
       (of_sloping > 0 ? sloping_needed : sloping_not_needed) += 1;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/occlusion/random_views.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -231,11 +232,10 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
     std::vector<PixelBox> whole(boxes.size());
     projectBoxes(projection, boxes, whole);
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       std::vector<PixelBox> images(boxes.size());
       projectBoxes(projection, boxes, images);
       EXPECT_EQ(images, whole) << hwy::TargetName(target) << ", seed " << seed;
-      hwy::SetSupportedTargetsForTest(0);
     }
     const std::size_t cut = random.below(static_cast<std::uint32_t>(boxes.size()) + 1);
     std::vector<PixelBox> parts(boxes.size());
@@ -328,11 +328,10 @@ TEST(PixelPoints, EveryInstructionSetAndEverySplitGiveTheSameBits) {
     std::vector<PointImage> whole(points.size()), parts(points.size());
     projectPoints(projection, points, whole);
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       std::vector<PointImage> images(points.size());
       projectPoints(projection, points, images);
       EXPECT_EQ(images, whole) << hwy::TargetName(target) << ", seed " << seed;
-      hwy::SetSupportedTargetsForTest(0);
     }
     const std::size_t cut = random.below(static_cast<std::uint32_t>(points.size()) + 1);
     projectPoints(projection, std::span(points).first(cut), std::span(parts).first(cut));

@@ -10,6 +10,7 @@
 #include "sightline/comparison/centre_coverage.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline {
 namespace {
@@ -148,9 +149,8 @@ TEST(RasteriserBits, AreTheSameWithEveryInstructionSet) {
       covered += std::bit_cast<float>(bits) > kUncovered ? 1 : 0;
     }
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const Look other = drawn(view, set, all(set), settings);
-      hwy::SetSupportedTargetsForTest(0);
       expectSame(first, other, what + ", " + hwy::TargetName(target));
     }
   });

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/random_numbers.h"
 
 namespace sightline::occlusion {
@@ -47,7 +48,7 @@ TEST(SquareDepths, AreTheLeastOfTheirSquaresAndOfEachRectangle) {
     const bool expected = leastOf(target, r) > than;
     (expected ? nearer : not_nearer) += 1;
     for (const std::int64_t set : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(set);
+      const test::ForcedInstructionSet forced(set);
       SquareDepths depths;
       depths.look(target);
       EXPECT_EQ(depths.allNearer(target, r, than), expected) << n << ", " << hwy::TargetName(set);
@@ -60,7 +61,6 @@ TEST(SquareDepths, AreTheLeastOfTheirSquaresAndOfEachRectangle) {
           EXPECT_EQ(depths.ofRow(row)[column], leastOf(target, square)) << n << ", " << hwy::TargetName(set);
         }
       }
-      hwy::SetSupportedTargetsForTest(0);
     }
   }
   EXPECT_GT(nearer, 300u);

@@ -16,6 +16,7 @@
 
 #include "src/occlusion/surfaces/winding_map.h"
 #include "tests/occlusion/random_views.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -419,9 +420,8 @@ TEST(SweptLines, AreTheSameWithEveryInstructionSet) {
     findSweeps(made.pixels, made.clip_depth, made.lines, grid, kLines, sweeps);
     const std::vector<std::uint64_t> first = bitsOf(sweeps);
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       findSweeps(made.pixels, made.clip_depth, made.lines, grid, kLines, sweeps);
-      hwy::SetSupportedTargetsForTest(0);
       EXPECT_EQ(bitsOf(sweeps), first) << "seed " << seed << ", " << hwy::TargetName(target);
     }
   }

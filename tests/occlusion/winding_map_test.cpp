@@ -12,6 +12,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/random_numbers.h"
 
 namespace sightline::occlusion {
@@ -110,9 +111,8 @@ TEST(WindingMap, HasTheSameBitsWithEveryInstructionSetAtTheGreatestWidth) {
     const std::vector<GridPoint> quad = farQuad(random);
     std::vector<float> first;
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const std::vector<float>& values = cover.of(quad);
-      hwy::SetSupportedTargetsForTest(0);
       if (first.empty()) {
         first = values;
         covered += static_cast<std::size_t>(std::ranges::count(values, 1.0f));
@@ -353,7 +353,7 @@ TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNe
     const std::array polygons{box(-9.0, -9.0, right, top), box(-far, -9.0, 9.0 - far, top)};
     std::vector<float> first;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       SmallMap map(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
       std::vector<BoundaryEdge> edges;
       for (const std::vector<GridPoint>& polygon : polygons) {
@@ -400,7 +400,6 @@ TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNe
         }
         EXPECT_EQ(gains[0].nearer, nearer) << n << ", " << hwy::TargetName(target);
       }
-      hwy::SetSupportedTargetsForTest(0);
       first = first.empty() ? values : first;
       ASSERT_EQ(values, first) << n << ", " << hwy::TargetName(target);
     }
@@ -430,7 +429,7 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
       }
     }
     for (const std::int64_t instructions : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(instructions);
+      const test::ForcedInstructionSet forced(instructions);
       std::vector<float> values = old;
       const DepthTarget target{values.data(), kWidth, kHeight, kWidth + 8};
       WindingMap map;
@@ -476,7 +475,6 @@ TEST(WindingMap, CountsOnlyPixelsWhoseChangeHidesSomethingWhereThatIsAskedFor) {
           }
         }
       }
-      hwy::SetSupportedTargetsForTest(0);
     }
   }
 }
@@ -512,7 +510,7 @@ TEST(WindingMap, DrawsOverOtherGroupsWhatItDrawsAloneWhereThatIsNearer) {
                height = static_cast<std::uint32_t>(number(1.0f, 40.0f));
     SmallMap map(width, height);
     for (std::size_t group = 0; group < 12; ++group) {
-      hwy::SetSupportedTargetsForTest(sets[group % sets.size()]);
+      const test::ForcedInstructionSet forced(sets[group % sets.size()]);
       const std::array polygon{convexPolygon(random, width, height)};
       std::vector<BoundaryEdge> edges;
       const std::array chains{addChain(polygon[0].points, 1, map.map().buffer(), edges)};
@@ -525,7 +523,6 @@ TEST(WindingMap, DrawsOverOtherGroupsWhatItDrawsAloneWhereThatIsNearer) {
       std::array<WindingGain, 1> gains, gains_alone;
       alone.map().draw(groups, edges, gains_alone);
       map.map().draw(groups, edges, gains);
-      hwy::SetSupportedTargetsForTest(0);
       std::uint32_t nearer = 0;
       for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
@@ -732,10 +729,9 @@ TEST(WindingMap, HasTheSameBitsOfAnyPolygonsWithEveryInstructionSet) {
     const std::array polygons{anyPolygon(random, width, height), anyPolygon(random, width, height)};
     std::vector<float> first;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       SmallMap map(width, height);
       drawGroup(map.map(), polygons, {.along_x = 0.1f, .along_y = -0.3f, .at_origin = 1.0f, .floor = 0.5f});
-      hwy::SetSupportedTargetsForTest(0);
       std::vector<float> values;
       for (std::uint32_t i = 0; i < width * height; ++i) {
         values.push_back(map.at(i % width, i / width));
