@@ -227,8 +227,7 @@ TEST(Culler, NodesOfManyTrianglesAreTestedWithALargeMinimumCost) {
 TEST(Culler, KeepsNoMoreWithMoreOccluders) {
   const auto expectNoMore = [](const DemoScene& demo, const char* scene, std::size_t step) {
     const CameraPath& path = demo.scene.paths[0];
-    for (const auto variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                               OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
+    for (const auto variant : test::kTreeVariants) {
       std::size_t before = std::numeric_limits<std::size_t>::max();
       for (const std::uint32_t count : {16u, 32u, 64u, 128u, 256u}) {
         AnyCuller culler = demo.culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = count});
@@ -273,8 +272,7 @@ TEST(Culler, BoxesInsideTheFrustumAreNotComparedWithItsPlanes) {
   view.eye = Vec3d(center(all)) + Vec3d(0, 5000, 1);
   setOrientation(view, {0, -1, 0}, {0, 0, 1});
   view.z_far = 1e5;
-  for (const auto variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                             OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
+  for (const auto variant : test::kTreeVariants) {
     AnyCuller culler = city().culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = 0});
     EXPECT_EQ(visibleOf(culler, view).size(), city().bounds.size());
     EXPECT_GT(culler.stats().nodes_tested, 0u);

@@ -17,8 +17,6 @@ namespace {
 
 using namespace test;
 
-constexpr OcclusionTreeVariant kVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
 constexpr std::uint32_t kDepthLimit = 1500;  // as OcclusionTreeStats::depth promises
 
 void onASmallStack(std::function<void()> work) {
@@ -56,7 +54,7 @@ View viewOf(bool orthographic) {
 TEST(DeepTree, IsBuiltAndAskedOnASmallStack) {
   const OccluderSet set = setOf(fence(740));
   for (const bool orthographic : {false, true}) {
-    for (const auto variant : kVariants) {
+    for (const auto variant : kTreeVariants) {
       onASmallStack([&] {
         OcclusionTree tree({.variant = variant});
         const View view = viewOf(orthographic);

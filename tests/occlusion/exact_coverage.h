@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <optional>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,19 @@ __extension__ typedef __int128 Wide;
 struct Point {
   std::int64_t x = 0, y = 0, z = 0;
   friend bool operator==(const Point&, const Point&) = default;
+};
+
+// Random whole numbers, of which scenes are made.
+class WholeNumbers {
+ public:
+  explicit WholeNumbers(std::uint64_t seed) : engine_(seed) {}
+  std::int64_t in(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  bool once(std::int64_t in_how_many) { return in(1, in_how_many) == 1; }
+
+ private:
+  std::mt19937_64 engine_;
 };
 
 struct Polygon {

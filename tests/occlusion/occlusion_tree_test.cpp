@@ -9,9 +9,6 @@ namespace {
 
 using namespace test;
 
-constexpr OcclusionTreeVariant kTreeVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                                  OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
-
 Visibility ask(OcclusionTreeVariant variant, const View& view, std::span<const OraclePolygon> polygons,
                const Box& box) {
   const OccluderSet set = setOf(polygons);

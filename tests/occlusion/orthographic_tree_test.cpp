@@ -13,9 +13,6 @@ namespace {
 
 using namespace test;
 
-constexpr OcclusionTreeVariant kFourVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                                  OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
-
 View parallelView(double height) {
   View view = viewFrom({0, 0, 0}, {0, 0, -1});
   view.orthographic = true;
@@ -34,7 +31,7 @@ TEST(OrthographicTree, AThingThatShowsPastASmallWallIsKeptWhateverElseThereIs) {
         wall(far_away, 0.5f * far_away, far_away, 0.5f * far_away, far_away)};
     const OccluderSet set = setOf(walls);
     const std::vector<OccluderId> chosen = all(set);
-    for (const OcclusionTreeVariant variant : kFourVariants) {
+    for (const OcclusionTreeVariant variant : kTreeVariants) {
       OcclusionTree tree({.variant = variant});
       tree.build(parallelView(4.0 * scale), set, chosen);
       for (const double gap : {1e-11, 1e-10, 2.4e-7, 1e-3}) {
@@ -55,7 +52,7 @@ TEST(OrthographicTree, AThingBetweenTheEyesPlaneAndASlantedOccluderIsKeptWithAFo
   view.eye = {20, 0, 0};
   view.aspect = 1.0;
   view.forward = {0, 0, -(1.0 - 0x1p-24)};
-  for (const OcclusionTreeVariant variant : kFourVariants) {
+  for (const OcclusionTreeVariant variant : kTreeVariants) {
     OcclusionTree tree({.variant = variant});
     tree.build(view, set, chosen);
     EXPECT_NE(tree.classify({{-3, -1, -1e-8f}, {30, 1, -0.5e-8f}}), Visibility::kHidden);

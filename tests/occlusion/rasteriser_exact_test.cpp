@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 #include <sstream>
 
 #include "sightline/comparison/centre_coverage.h"
@@ -17,6 +16,7 @@ namespace {
 
 using exact::Point;
 using exact::Polygon;
+using exact::WholeNumbers;
 
 struct LatticeScene {
   std::string kind;
@@ -25,19 +25,11 @@ struct LatticeScene {
   bool mesh = false;  // triangles, from which findOccluders makes the set
 };
 
-class LatticeRandom {
- public:
-  explicit LatticeRandom(std::uint64_t seed) : engine_(seed) {}
-  std::int64_t in(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
-  }
-  bool once(std::int64_t in_how_many) { return in(1, in_how_many) == 1; }
-  // Mostly in view of a perspective camera of 90 degrees.
-  Point point() { return {in(-24, 24), in(-24, 24), in(6, 30)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
+// Mostly in view of a perspective camera of 90 degrees.
+Point anyPoint(WholeNumbers& random) {
+  const std::int64_t x = random.in(-24, 24), y = random.in(-24, 24);
+  return {x, y, random.in(6, 30)};
+}
 
 Point operator+(const Point& a, const Point& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -50,7 +42,7 @@ Point operator*(const Point& a, std::int64_t s) {
 }
 
 // Returns a polygon that mostly faces the camera.
-Polygon facing(const exact::Camera& camera, LatticeRandom& random, std::vector<Point> vertices) {
+Polygon facing(const exact::Camera& camera, WholeNumbers& random, std::vector<Point> vertices) {
   Polygon polygon{std::move(vertices), random.once(3)};
   if (!exact::imageOf(camera, {polygon.vertices, false}) && !random.once(10)) {
     std::reverse(polygon.vertices.begin(), polygon.vertices.end());
@@ -59,7 +51,7 @@ Polygon facing(const exact::Camera& camera, LatticeRandom& random, std::vector<P
 }
 
 // A convex polygon on the lattice of two random vectors.
-std::vector<Point> latticePolygon(LatticeRandom& random) {
+std::vector<Point> latticePolygon(WholeNumbers& random) {
   static const std::vector<std::vector<std::pair<int, int>>> kShapes = {
       {{0, 0}, {1, 0}, {0, 1}},
       {{0, 0}, {2, 0}, {2, 2}, {0, 2}},
@@ -77,39 +69,39 @@ std::vector<Point> latticePolygon(LatticeRandom& random) {
   return vertices;
 }
 
-void addPolygons(LatticeScene& scene, LatticeRandom& random) {
+void addPolygons(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "polygons";
   for (std::int64_t i = random.in(1, 4); i > 0; --i) {
-    scene.polygons.push_back(facing(scene.camera, random,
-                                    random.once(3)
-                                        ? std::vector<Point>{random.point(), random.point(), random.point()}
-                                        : latticePolygon(random)));
+    scene.polygons.push_back(
+        facing(scene.camera, random,
+               random.once(3) ? std::vector<Point>{anyPoint(random), anyPoint(random), anyPoint(random)}
+                              : latticePolygon(random)));
   }
 }
 
 // Two or three triangles with a common edge: about half of them fold over, and lie on one side of it.
-void addPair(LatticeScene& scene, LatticeRandom& random) {
+void addPair(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "pair";
-  const Point p = random.point(), q = random.point();
+  const Point p = anyPoint(random), q = anyPoint(random);
   for (std::int64_t i = random.once(3) ? 3 : 2; i > 0; --i) {
-    scene.polygons.push_back(facing(scene.camera, random, {p, q, random.point()}));
+    scene.polygons.push_back(facing(scene.camera, random, {p, q, anyPoint(random)}));
   }
 }
 
 // Two triangles whose images share an edge that they do not share themselves: a gap.
-void addTouching(LatticeScene& scene, LatticeRandom& random) {
+void addTouching(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "touching";
-  const Point p = random.point(), q = random.point(), behind{0, 0, random.in(1, 9)};
+  const Point p = anyPoint(random), q = anyPoint(random), behind{0, 0, random.in(1, 9)};
   const auto farther = [&](const Point& a) { return scene.camera.orthographic ? a + behind : a * 2; };
-  scene.polygons.push_back(facing(scene.camera, random, {p, q, random.point()}));
-  scene.polygons.push_back(facing(scene.camera, random, {farther(p), farther(q), farther(random.point())}));
+  scene.polygons.push_back(facing(scene.camera, random, {p, q, anyPoint(random)}));
+  scene.polygons.push_back(facing(scene.camera, random, {farther(p), farther(q), farther(anyPoint(random))}));
 }
 
 constexpr std::pair<int, int> kDirections[] = {{8, 0},  {6, 5},   {0, 8},  {-5, 6},
                                                {-8, 1}, {-6, -6}, {1, -8}, {5, -5}};
 
 // Triangles around a vertex, all around it or with some left out.
-void addFan(LatticeScene& scene, LatticeRandom& random) {
+void addFan(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "fan";
   const Point middle{random.in(-5, 5), random.in(-5, 5), random.in(8, 20)};
   std::vector<Point> ring;
@@ -126,7 +118,7 @@ void addFan(LatticeScene& scene, LatticeRandom& random) {
 }
 
 // A row of upright walls that overlap each other where the row turns back.
-void addStrip(LatticeScene& scene, LatticeRandom& random) {
+void addStrip(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "strip";
   Point at{-20, -10, random.in(8, 20)};
   for (int i = 0; i < 5; ++i) {
@@ -140,7 +132,7 @@ void addStrip(LatticeScene& scene, LatticeRandom& random) {
 }
 
 // A wall of triangles over a grid with random depths.
-void addGrid(LatticeScene& scene, LatticeRandom& random) {
+void addGrid(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "grid";
   const std::int64_t n = random.in(2, 4), step = random.in(4, 9), rough = random.in(0, 3);
   std::vector<Point> points;
@@ -159,7 +151,7 @@ void addGrid(LatticeScene& scene, LatticeRandom& random) {
 }
 
 // A wall with two or three other walls on its long upper edge, which lean towards or away from each other.
-void addTJunction(LatticeScene& scene, LatticeRandom& random) {
+void addTJunction(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "T-junction";
   scene.mesh = true;
   const std::int64_t parts = random.in(2, 3);
@@ -188,7 +180,7 @@ void addTJunction(LatticeScene& scene, LatticeRandom& random) {
 }
 
 // Polygons of any kind with corners on both sides of the near plane, on it, and behind the eye.
-void addNear(LatticeScene& scene, LatticeRandom& random) {
+void addNear(LatticeScene& scene, WholeNumbers& random) {
   scene.kind = "near plane";
   scene.camera.near = random.in(1, 4);
   const auto point = [&] { return Point{random.in(-12, 12), random.in(-12, 12), random.in(-8, 12)}; };
@@ -202,7 +194,7 @@ void addNear(LatticeScene& scene, LatticeRandom& random) {
 }
 
 LatticeScene randomScene(std::uint64_t seed) {
-  LatticeRandom random(seed);
+  WholeNumbers random(seed);
   LatticeScene scene;
   scene.camera.width = random.once(8) ? 1 : random.in(1, 16);
   scene.camera.height = random.once(8) ? 1 : random.in(1, 12);
@@ -210,7 +202,7 @@ LatticeScene randomScene(std::uint64_t seed) {
   const std::int64_t g = std::int64_t{1} << random.in(0, 1);
   scene.camera.gx = scene.camera.orthographic ? 16 * g : g;
   scene.camera.gy = scene.camera.orthographic ? 16 : 1;
-  constexpr void (*kKinds[])(LatticeScene&, LatticeRandom&) = {
+  constexpr void (*kKinds[])(LatticeScene&, WholeNumbers&) = {
       addPolygons, addPair, addTouching, addFan, addStrip, addGrid, addNear, addTJunction};
   kKinds[seed % std::size(kKinds)](scene, random);
   return scene;

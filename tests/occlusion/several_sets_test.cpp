@@ -14,19 +14,12 @@ namespace {
 
 using test::all, test::kLookingBack, test::lookAt, test::OraclePolygon, test::setOf, test::wall;
 
-// Lets a test try both structures in the same way.
-struct Tree {
-  OcclusionTree structure;
-  explicit Tree(OcclusionTreeVariant variant) : structure({.variant = variant}) {}
-};
-
 // try_with(structure, name)
 template <typename Try>
 void withEach(Try&& try_with) {
-  for (const OcclusionTreeVariant variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                             OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
-    Tree tree(variant);
-    try_with(tree.structure, "tree variant " + std::to_string(static_cast<int>(variant)));
+  for (const OcclusionTreeVariant variant : test::kTreeVariants) {
+    OcclusionTree tree({.variant = variant});
+    try_with(tree, "tree variant " + std::to_string(static_cast<int>(variant)));
   }
   SupportingPlanes planes;
   try_with(planes, "supporting planes");

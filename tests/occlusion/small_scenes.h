@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/occlusion/occlusion_tree.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/visibility_oracle.h"
 
@@ -44,6 +45,10 @@ inline std::vector<OccluderId> all(const OccluderSet& set) {
 inline OraclePolygon wall(float x0, float x1, float y0, float y1, float z) {
   return {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, false};
 }
+
+inline constexpr OcclusionTreeVariant kTreeVariants[] = {
+    OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC, OcclusionTreeVariant::kFME,
+    OcclusionTreeVariant::kFMC};
 
 inline const View kLookingBack = viewFrom({0, 0, 0}, {0, 0, -1});
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 #include <sstream>
 
 #include "sightline/occluders/surface_set.h"
@@ -16,6 +15,7 @@ namespace sightline {
 namespace {
 
 using exact::Point;
+using exact::WholeNumbers;
 using Triangle = std::array<Point, 3>;
 
 // What is drawn, in camera space.
@@ -23,18 +23,6 @@ struct SurfaceCase {
   std::string kind;
   exact::Camera camera;
   std::vector<Triangle> single, both;  // single-sided and double-sided
-};
-
-class WholeNumbers {
- public:
-  explicit WholeNumbers(std::uint64_t seed) : engine_(seed) {}
-  std::int64_t in(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
-  }
-  bool once(std::int64_t in_how_many) { return in(1, in_how_many) == 1; }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 // Adds a triangle, turned over once in so many times; never if that is 0.
