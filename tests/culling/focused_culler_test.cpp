@@ -8,18 +8,20 @@
 #include <thread>
 #include <vector>
 
-#include "oracle/exact_visibility.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/edge_scene.h"
+#include "tests/culling/kept_objects.h"
+#include "tests/culling/seen_though_culled.h"
 #include "tests/support/rounds.h"
 #include "tests/support/solids.h"
 
 namespace sightline::culling {
 namespace {
 
+using kept_objects::isKept;
 using test::EdgeScene;
 using test::Random;
 
@@ -94,10 +96,6 @@ struct Street {
   }
 };
 
-bool kept(const AnyCuller& culler, std::size_t object) {
-  return std::binary_search(culler.visible().begin(), culler.visible().end(), ObjectId(object));
-}
-
 // Whether rays reach a small box of the street.
 bool seen(const Street& street, std::size_t object, const View& view) {
   std::mt19937_64 random(object);
@@ -162,17 +160,17 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
       focused_frames += culler.statistic("map", "focused");
       EXPECT_EQ(without.statistic("map", "focused"), 0u);
       for (std::size_t i = 0; i < street.bounds.size(); ++i) {
-        if (kept(culler, i)) {
+        if (isKept(culler, ObjectId(i))) {
           continue;
         }
         ++judged;
-        more += kept(without, i) ? 1 : 0;
+        more += isKept(without, ObjectId(i)) ? 1 : 0;
         std::mt19937_64 random(i);
         // The polygons of an occluding object would block rays to itself.
-        const test::Sight sight =
-            i < street.first_small
-                ? test::Sight{}
-                : test::lookAt(street.bounds[i], view, street.prepared, kept(without, i) ? 400 : 20, random);
+        const test::Sight sight = i < street.first_small
+                                      ? test::Sight{}
+                                      : test::lookAt(street.bounds[i], view, street.prepared,
+                                                     isKept(without, ObjectId(i)) ? 400 : 20, random);
         EXPECT_FALSE(sight.seen) << "seed " << seed << ", frame " << frame << ", object " << i << " at "
                                  << sight.point.x << " " << sight.point.y << " " << sight.point.z;
       }
@@ -234,7 +232,7 @@ TEST(FocusedCuller, GivesTheSameAnswersWithAbsurdSettings) {
       culler.cull(view);
       plain.cull(view);
       for (const ObjectId object : culler.visible()) {
-        EXPECT_TRUE(kept(plain, object.value)) << magnification;
+        EXPECT_TRUE(isKept(plain, object)) << magnification;
       }
     }
   }
@@ -342,8 +340,8 @@ void expectTheWallHidesInWindows(const test::OraclePolygon& wall, bool moves) {
     settings.surfaces = SurfaceUse::kAlone;
     AnyCuller culler(hierarchy, bounds, none, settings, {.surfaces = moves ? nullptr : &surfaces});
     culler.cull(scene.view, {}, nullptr, {&moving, moves ? 1u : 0u});
-    EXPECT_EQ(kept(culler, 1), windows == 0);
-    EXPECT_TRUE(kept(culler, 2));
+    EXPECT_EQ(isKept(culler, ObjectId(1u)), windows == 0);
+    EXPECT_TRUE(isKept(culler, ObjectId(2u)));
   }
 }
 
@@ -400,7 +398,7 @@ TEST_P(FocusedCity, KeepsASubsetOfWhatIsKeptWithoutAWindow) {
       with.cull(view);
       without.cull(view);
       for (const ObjectId object : with.visible()) {
-        EXPECT_TRUE(kept(without, object.value)) << "frame " << frame << ", object " << object.value;
+        EXPECT_TRUE(isKept(without, object)) << "frame " << frame << ", object " << object.value;
       }
       fewer += with.visible().size() < without.visible().size() ? 1 : 0;
       ++frame;
@@ -421,20 +419,17 @@ TEST_P(FocusedCity, CullsNothingThatIsSeen) {
     focused_frames += culler.statistic("map", "focused");
     std::vector<ObjectId> hidden;
     for (const ObjectId object : frustum.visible()) {
-      if (!kept(culler, object.value)) {
+      if (!isKept(culler, object)) {
         hidden.push_back(object);
       }
     }
     culled += hidden.size();
-    std::vector<Witness> witnesses = exact.visibleThroughPixels(view, 320, 180);
-    seen += witnesses.size();
-    const std::vector<Witness> aimed = exact.visibleByAimedRays(view, hidden, 12);
-    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-    for (const Witness& witness : witnesses) {
-      if (!kept(culler, witness.object.value)) {
-        EXPECT_FALSE(exact.confirm(view, witness))
-            << "frame " << frame << ", object " << witness.object.value;
-      }
+    const kept_objects::Sightings sightings =
+        kept_objects::lookForCulled(exact, view, {.width = 320, .height = 180, .samples = 12}, hidden,
+                                    [&](ObjectId object) { return isKept(culler, object); });
+    seen += sightings.through_pixels;
+    for (const Witness& witness : sightings.though_culled) {
+      ADD_FAILURE() << "frame " << frame << ", object " << witness.object.value << " is seen";
     }
     ++frame;
   }

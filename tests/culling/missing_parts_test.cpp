@@ -8,16 +8,13 @@
 
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
+#include "tests/culling/kept_objects.h"
 
 namespace sightline {
 namespace {
 
 using namespace demo_frames;
-
-std::vector<ObjectId> visibleIn(Culler& culler, const View& view) {
-  culler.cull(view);
-  return {culler.visible().begin(), culler.visible().end()};
-}
+using kept_objects::visibleOf;
 
 std::vector<ObjectId> allOf(const DemoScene& demo) {
   std::vector<ObjectId> all;
@@ -32,7 +29,7 @@ TEST(MissingParts, WithoutAHierarchyMethodsThatNeedOneKeepEverything) {
   for (const NamedSettings& method : kStructures) {
     Culler culler({.object_bounds = demo.bounds, .occluders = &demo.occluders}, makeMethod(method.settings));
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 2)) {
-      EXPECT_EQ(visibleIn(culler, view), allOf(demo)) << method.name;
+      EXPECT_EQ(visibleOf(culler, view), allOf(demo)) << method.name;
       EXPECT_TRUE(culler.stats().unfit) << method.name;
     }
   }
@@ -44,7 +41,7 @@ TEST(MissingParts, WithoutOccludersEveryMethodIsViewFrustumCulling) {
   for (const NamedSettings& method : kStructures) {
     Culler culler(scene, makeMethod(method.settings)), frustum(scene, frustumCulling());
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 4)) {
-      EXPECT_EQ(visibleIn(culler, view), visibleIn(frustum, view)) << method.name;
+      EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << method.name;
       EXPECT_FALSE(culler.stats().unfit) << method.name;
     }
   }
@@ -63,7 +60,7 @@ TEST(MissingParts, SetsAloneGiveWhatTheyGiveWithAHierarchy) {
     Culler alone({.object_bounds = demo.bounds, .sets = used}, visibilityOctree());
     Culler whole({.hierarchy = &demo.bvh, .object_bounds = demo.bounds, .sets = used}, visibilityOctree());
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 6)) {
-      EXPECT_EQ(visibleIn(alone, view), visibleIn(whole, view));
+      EXPECT_EQ(visibleOf(alone, view), visibleOf(whole, view));
       EXPECT_FALSE(alone.stats().unfit);
       EXPECT_GT(alone.visible().size(), 0u);
       EXPECT_LT(alone.visible().size(), demo.bounds.size());
@@ -81,7 +78,7 @@ TEST(MissingParts, BadBoxesAreKeptWithoutAHierarchy) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   Culler culler({.object_bounds = bounds}, visibilityOctree());
-  EXPECT_EQ(visibleIn(culler, view), (std::vector<ObjectId>{ObjectId(0u), ObjectId(1u), ObjectId(2u)}));
+  EXPECT_EQ(visibleOf(culler, view), (std::vector<ObjectId>{ObjectId(0u), ObjectId(1u), ObjectId(2u)}));
 }
 
 TEST(MissingParts, StatisticsAreZeroWhereEverythingIsKept) {

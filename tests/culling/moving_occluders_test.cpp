@@ -7,6 +7,7 @@
 
 #include "sightline/occluders/occluder_database.h"
 #include "tests/culling/demo_frames.h"
+#include "tests/culling/kept_objects.h"
 #include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
@@ -51,10 +52,6 @@ struct Crossing {
   }
 };
 
-bool kept(const AnyCuller& culler, std::size_t object) {
-  return std::binary_search(culler.visible().begin(), culler.visible().end(), ObjectId(object));
-}
-
 class MovingOccluders : public ::testing::TestWithParam<std::tuple<std::size_t, HierarchyKind, bool>> {
  protected:
   AnySettings settings() const {
@@ -90,12 +87,12 @@ TEST_P(MovingOccluders, HideNothingThatARayReachesAndNothingWhenTheyAreGone) {
       polygons.push_back(scene.mover);
     }
     for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
-      const bool hidden = !kept(culler, i);
+      const bool hidden = !kept_objects::isKept(culler, ObjectId(i));
       if (hidden) {
         EXPECT_FALSE(test::lookAt(scene.bounds[i], view, polygons, 80, scene.random.engine()).seen)
             << "frame " << frame << " object " << i;
       }
-      hidden_by_it += hidden && kept(still, i) ? 1 : 0;
+      hidden_by_it += hidden && kept_objects::isKept(still, ObjectId(i)) ? 1 : 0;
       shown_again += !hidden && hidden_before[i] ? 1 : 0;
       hidden_before[i] = hidden;
     }

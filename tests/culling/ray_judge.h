@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <string>
 
-#include "oracle/exact_visibility.h"
 #include "tests/culling/demo_frames.h"
+#include "tests/culling/kept_objects.h"
+#include "tests/culling/seen_though_culled.h"
 
 namespace sightline::demo_frames {
+
+using kept_objects::isKept;
 
 struct NamedCuller {
   std::string name;
@@ -70,10 +73,6 @@ inline std::vector<NamedCuller> surfaceCullers(const DemoScene& demo) {
   return cullers;
 }
 
-inline bool kept(const AnyCuller& culler, ObjectId object) {
-  return std::binary_search(culler.visible().begin(), culler.visible().end(), object);
-}
-
 // Returns the objects that at least one of the cullers left out.
 inline std::vector<ObjectId> culledByAny(const DemoScene& demo, const std::vector<NamedCuller>& cullers) {
   std::vector<std::size_t> keepers(demo.bounds.size(), 0);
@@ -89,6 +88,15 @@ inline std::vector<ObjectId> culledByAny(const DemoScene& demo, const std::vecto
     }
   }
   return culled;
+}
+
+// The names of the cullers that left out the object.
+inline std::string namesWithout(const std::vector<NamedCuller>& cullers, ObjectId object) {
+  std::string names;
+  for (const NamedCuller& c : cullers) {
+    names += isKept(c.culler, object) ? "" : c.name + "; ";
+  }
+  return names;
 }
 
 struct Counts {
@@ -120,29 +128,27 @@ class Judge {
     }
     frustum_.cull(view);
     std::vector<ObjectId> culled = culledByAny(demo_, cullers_);
-    std::vector<Witness> witnesses = exact_.visibleThroughPixels(view, 128, 72);
-    counts.seen += witnesses.size();
-    std::erase_if(culled, [&](ObjectId object) { return !kept(frustum_, object); });
+    std::erase_if(culled, [&](ObjectId object) { return !isKept(frustum_, object); });
     counts.hidden += culled.size();
-    const std::vector<Witness> aimed = exact_.visibleByAimedRays(view, culled, 6);
-    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-    for (const Witness& witness : witnesses) {
-      std::string blind;
-      for (const NamedCuller& c : cullers_) {
-        blind += kept(c.culler, witness.object) ? "" : c.name + "; ";
-      }
-      blind += kept(frustum_, witness.object) ? "" : "frustum";
-      if (!blind.empty() && exact_.confirm(view, witness)) {
-        ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
-                      << witness.point.y << " " << witness.point.z << ", " << where << ", but culled by "
-                      << blind;
-      }
+    const kept_objects::Sightings sightings =
+        kept_objects::lookForCulled(exact_, view, {.width = 128, .height = 72, .samples = 6}, culled,
+                                    [&](ObjectId object) { return cullersWithout(object).empty(); });
+    counts.seen += sightings.through_pixels;
+    for (const Witness& witness : sightings.though_culled) {
+      ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
+                    << witness.point.y << " " << witness.point.z << ", " << where << ", but culled by "
+                    << cullersWithout(witness.object);
     }
   }
 
   Counts counts;
 
  private:
+  // The names of those that culled the object.
+  std::string cullersWithout(ObjectId object) const {
+    return namesWithout(cullers_, object) + (isKept(frustum_, object) ? "" : "frustum");
+  }
+
   const DemoScene& demo_;
   ExactVisibility exact_;
   std::vector<NamedCuller> cullers_;

@@ -52,9 +52,8 @@ bool keepsNoMore(const AnyCuller& a, const AnyCuller& b) {
 }
 
 std::size_t notKeptBy(const AnyCuller& a, const AnyCuller& b) {
-  return static_cast<std::size_t>(std::count_if(b.visible().begin(), b.visible().end(), [&](ObjectId object) {
-    return !demo_frames::kept(a, object);
-  }));
+  return static_cast<std::size_t>(std::count_if(b.visible().begin(), b.visible().end(),
+                                                [&](ObjectId object) { return !isKept(a, object); }));
 }
 
 // Turns a view to the left about the vertical axis.

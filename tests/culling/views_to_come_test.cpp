@@ -20,6 +20,8 @@
 #include "src/scene/usable_view.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
+#include "tests/culling/kept_objects.h"
+#include "tests/culling/seen_though_culled.h"
 #include "tests/support/random_numbers.h"
 
 namespace sightline {
@@ -27,6 +29,7 @@ namespace {
 
 using culling::ViewsToCome;
 using demo_frames::DemoScene;
+using kept_objects::isKept;
 
 // A camera that moves and turns by the same each frame.
 struct Motion {
@@ -359,10 +362,6 @@ std::vector<View> wander(const SeenScene& seen, std::uint64_t seed, std::size_t 
   return views;
 }
 
-bool isKept(const Culler& culler, ObjectId object) {
-  return std::ranges::binary_search(culler.visible(), object);
-}
-
 // Every object's box is given as a moving one too.
 void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<const View> views,
                             const std::string& where) {
@@ -373,7 +372,6 @@ void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<con
       continue;
     }
     ++held;
-    std::vector<Witness> witnesses = seen.exact.visibleThroughPixels(views[v], 96, 54);
     std::vector<ObjectId> culled;
     const Frustum frustum = frustumOf(views[v]);
     for (std::size_t o = 0; o < seen.demo.bounds.size(); ++o) {
@@ -388,15 +386,14 @@ void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<con
         culled.emplace_back(o);
       }
     }
-    const std::vector<Witness> aimed = seen.exact.visibleByAimedRays(views[v], culled, 4);
-    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-    for (const Witness& witness : witnesses) {
-      if (!isKept(culler, witness.object) ||
-          culler.dynamicStates()[witness.object.value] == Visibility::kHidden) {
-        EXPECT_FALSE(seen.exact.confirm(views[v], witness))
-            << where << ", view " << v << ": object " << witness.object.value << " is seen at "
-            << witness.point.x << ' ' << witness.point.y << ' ' << witness.point.z;
-      }
+    const auto is_kept = [&](ObjectId object) {
+      return isKept(culler, object) && culler.dynamicStates()[object.value] != Visibility::kHidden;
+    };
+    const kept_objects::Sightings sightings =
+        kept_objects::lookForCulled(seen.exact, views[v], {.samples = 4}, culled, is_kept);
+    for (const Witness& witness : sightings.though_culled) {
+      ADD_FAILURE() << where << ", view " << v << ": object " << witness.object.value << " is seen at "
+                    << witness.point.x << ' ' << witness.point.y << ' ' << witness.point.z;
     }
   }
   EXPECT_GT(held, views.size() / 4) << where;

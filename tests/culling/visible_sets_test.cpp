@@ -7,10 +7,11 @@
 #include <iterator>
 #include <string>
 
-#include "oracle/exact_visibility.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/culling/kept_objects.h"
+#include "tests/culling/ray_judge.h"
+#include "tests/culling/seen_though_culled.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -21,7 +22,9 @@ using fake_sets::FakeSets;
 using fake_sets::randomMembers;
 
 using kept_objects::includesAll;
+using kept_objects::lookForCulled;
 using kept_objects::Objects;
+using kept_objects::Sightings;
 using kept_objects::visibleOf;
 
 AnyCuller cullerWith(const DemoScene& demo, HierarchyKind kind, AnySettings settings, VisibleSets* sets) {
@@ -329,13 +332,8 @@ class TrueSets {
   AnyCuller tree_;
 };
 
-struct SetCuller {
-  std::string name;
-  AnyCuller culler;
-};
-
-std::vector<SetCuller> allSetCullers(const DemoScene& demo, VisibleSets* sets) {
-  std::vector<SetCuller> cullers;
+std::vector<NamedCuller> allSetCullers(const DemoScene& demo, VisibleSets* sets) {
+  std::vector<NamedCuller> cullers;
   const auto add = [&](const std::string& name, HierarchyKind kind, AnySettings settings) {
     settings.visible_sets = true;
     cullers.push_back({name + " " + nameOf(kind), cullerWith(demo, kind, settings, sets)});
@@ -365,7 +363,7 @@ void judgeWalk(const DemoScene& demo, const std::vector<View>& views, const std:
   FakeSets sets(demo.bounds);
   TrueSets true_sets(demo);
   ExactVisibility exact(demo.scene.view());
-  std::vector<SetCuller> cullers = allSetCullers(demo, &sets);
+  std::vector<NamedCuller> cullers = allSetCullers(demo, &sets);
   std::size_t seen = 0, kept = 0, in_sets = 0;
   std::vector<bool> members;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -377,41 +375,20 @@ void judgeWalk(const DemoScene& demo, const std::vector<View>& views, const std:
       members = true_sets.of(view);
       sets.use(static_cast<std::uint32_t>(v), members);
     }
-    std::vector<bool> culled_by_any(demo.bounds.size(), false);
-    for (SetCuller& c : cullers) {
+    for (NamedCuller& c : cullers) {
       const Objects visible = visibleOf(c.culler, view);
       EXPECT_TRUE(includesAll(visible, within(visible, members)) && within(visible, members) == visible)
           << c.name << " keeps what is not in the set, " << where << " view " << v;
-      std::vector<bool> is_kept(demo.bounds.size(), false);
-      for (const ObjectId object : visible) {
-        is_kept[object.value] = true;
-      }
-      for (std::size_t i = 0; i < is_kept.size(); ++i) {
-        culled_by_any[i] = culled_by_any[i] || !is_kept[i];
-      }
       kept += visible.size();
     }
     in_sets += static_cast<std::size_t>(std::count(members.begin(), members.end(), true));
-    Objects targets;
-    for (std::size_t i = 0; i < culled_by_any.size(); ++i) {
-      if (culled_by_any[i]) {
-        targets.push_back(ObjectId(i));
-      }
-    }
-    std::vector<Witness> witnesses = exact.visibleThroughPixels(view, 96, 54);
-    const std::vector<Witness> aimed = exact.visibleByAimedRays(view, targets, 3);
-    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-    seen += witnesses.size();
-    for (const Witness& witness : witnesses) {
-      std::string blind;
-      for (const SetCuller& c : cullers) {
-        const auto visible = c.culler.visible();
-        blind += std::binary_search(visible.begin(), visible.end(), witness.object) ? "" : c.name + "; ";
-      }
-      if (!blind.empty() && exact.confirm(view, witness)) {
-        ADD_FAILURE() << "object " << witness.object.value << " is seen, " << where << " view " << v
-                      << ", but culled by " << blind;
-      }
+    const Sightings sightings =
+        lookForCulled(exact, view, {.samples = 3}, culledByAny(demo, cullers),
+                      [&](ObjectId object) { return namesWithout(cullers, object).empty(); });
+    seen += sightings.through_pixels;
+    for (const Witness& witness : sightings.though_culled) {
+      ADD_FAILURE() << "object " << witness.object.value << " is seen, " << where << " view " << v
+                    << ", but culled by " << namesWithout(cullers, witness.object);
     }
   }
   EXPECT_GT(seen, 3 * views.size()) << where;
