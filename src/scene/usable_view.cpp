@@ -33,7 +33,8 @@ const char* projectionFault(const View& view) {
     return "View::aspect times the height of the view must be greater than 0 and finite";
   }
   if (!(std::isfinite(view.z_near) && view.z_near >= 0.0)) {
-    return "View::z_near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
+    return "View::z_near must be 0 or more metres and finite; to see what is behind the eye, move the eye "
+           "back";
   }
   if (!(view.z_far > view.z_near)) {
     return "View::z_far must be greater than View::z_near; it may be infinite";

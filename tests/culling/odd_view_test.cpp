@@ -96,8 +96,8 @@ TEST_P(OddViews, WithoutANearPlaneTheSameIsHiddenAndWhatIsAtTheEyeIsKept) {
 
 TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   std::vector<View> views;
-  for (double View::*member :
-       {&View::z_near, &View::z_far, &View::aspect, GetParam() ? &View::ortho_height : &View::tan_half_fovy}) {
+  for (double View::*member : {&View::z_near, &View::z_far, &View::aspect,
+                               GetParam() ? &View::ortho_height : &View::tan_half_fovy}) {
     for (const double bad : {-1.0, kOddNumber}) {
       views.push_back(scene_.view);
       views.back().*member = bad;

@@ -37,8 +37,8 @@ struct BoxAndPixel {
     }
     const Vec3d camera = view.toCamera(point - view.eye);
     const double x = view.pixelX(camera), y = view.pixelY(camera);
-    in_view = box.wellFormed() && camera.z > 2.0 * view.near && camera.z < view.far && x > 0.0 &&
-              y > 0.0 && x < kColumns && y < kRows;
+    in_view = box.wellFormed() && camera.z > 2.0 * view.near && camera.z < view.far && x > 0.0 && y > 0.0 &&
+              x < kColumns && y < kRows;
     if (in_view) {
       pixel = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
     }

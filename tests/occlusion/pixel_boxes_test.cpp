@@ -142,8 +142,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     const bool inside = exact.x0 >= 0 && exact.x1 <= kPixelsWide && exact.y0 >= 0 &&
                         exact.y1 <= kPixelsHigh && exact.z1 <= view.far;
     const bool well_inside = exact.x0 > left && exact.x1 + right < kPixelsWide && exact.y0 > bottom &&
-                             exact.y1 + top < kPixelsHigh &&
-                             exact.z1 * (1 + 0x1p-20L) + rounding < view.far;
+                             exact.y1 + top < kPixelsHigh && exact.z1 * (1 + 0x1p-20L) + rounding < view.far;
     EXPECT_TRUE(!image.whole || inside) << "seed " << seed;
     EXPECT_TRUE(image.whole || !well_inside) << "seed " << seed;
     whole += image.whole ? 1 : 0;
