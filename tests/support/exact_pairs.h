@@ -10,10 +10,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <span>
 #include <utility>
@@ -129,13 +131,16 @@ class Feasibility {
   Whole scale_ = 1;
 };
 
-// Scales vectors by one power of two so that all coordinates are integers.
+// Scales vectors by the least power of two that makes all coordinates integers. Small integers stay small, so
+// that the tableau's entries take one or two words.
 class WholeVectors {
  public:
   void add(const Vec3d& v) {
     for (int axis = 0; axis < 3; ++axis) {
       if (v[axis] != 0.0) {
-        lowest_ = std::min(lowest_, std::ilogb(v[axis]) - 52);
+        const int exponent = lowestBit(v[axis]);
+        const auto digits = static_cast<std::uint64_t>(std::abs(digitsOf(v[axis], exponent)));
+        lowest_ = std::min(lowest_, exponent + std::countr_zero(digits));
       }
     }
   }
@@ -148,12 +153,19 @@ class WholeVectors {
     if (value == 0.0) {
       return 0;
     }
-    const int exponent = std::ilogb(value) - 52;
-    const Whole digits = static_cast<std::int64_t>(std::ldexp(value, -exponent));
-    return digits << static_cast<unsigned>(exponent - lowest_);
+    const int exponent = lowestBit(value);
+    const std::int64_t digits = digitsOf(value, exponent);
+    return exponent >= lowest_ ? Whole(digits) << static_cast<unsigned>(exponent - lowest_)
+                               : Whole(digits / (std::int64_t{1} << (lowest_ - exponent)));  // without a rest
   }
 
  private:
+  // The exponent of the last bit of the mantissa.
+  static int lowestBit(double value) { return std::ilogb(value) - 52; }
+  static std::int64_t digitsOf(double value, int exponent) {
+    return static_cast<std::int64_t>(std::ldexp(value, -exponent));
+  }
+
   int lowest_ = 0;
 };
 
