@@ -28,9 +28,8 @@ bool isDrawable(const View& view, double page_height) {
   const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
-         isSize(view.z_near) && isSize(view.z_far) && view.z_near < view.z_far && isShift(view.shift_x) &&
-         isShift(view.shift_y) && isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) &&
-         isFinite(view.forward);
+         isSize(view.z_near) && view.z_near < view.z_far && isShift(view.shift_x) && isShift(view.shift_y) &&
+         isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
 }
 
 bool narrow(double at_0, double at_1, double& from, double& to) {

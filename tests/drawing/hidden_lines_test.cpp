@@ -62,6 +62,9 @@ TEST(HiddenLines, EndAtTheBordersOfTheView) {
   expectShares(sketch.pieces(squareView(), sketch.line({-4, 0, -2}, {4, 0, -2})), {{0.25, 0.75}});
   // From behind the eye to beyond the far plane.
   expectShares(sketch.pieces(squareView(), sketch.line({0, 0.5, 99}, {0, 0.5, -101})), {{0.5, 0.995}});
+  View endless = squareView();
+  endless.z_far = std::numeric_limits<double>::infinity();
+  expectShares(sketch.pieces(endless, sketch.line({0, 0.5, 99}, {0, 0.5, -101})), {{0.5, 1}});
   expectShares(sketch.pieces(squareView(), sketch.line({0, 0, 5}, {3, 0, 2})), {});
   expectShares(sketch.pieces(squareView(), sketch.line({5, 0, -2}, {3, 0, -2})), {});
   // Along the border itself.
