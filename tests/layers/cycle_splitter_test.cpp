@@ -310,6 +310,7 @@ TEST(CycleSplitter, PartsThatMustStayWholeDo) {
   ThingSorter sorter(threeRods(), false);
   sorter.splitter().setMayDivide(PartId(0u), false);
   sorter.splitter().setMayDivide(PartId(2u), false);
+  sorter.splitter().setMayDivide(PartId(), false);  // no part
   EXPECT_EQ(largestGroup(expectRight(sorter, farView(), 9)), 1u);
   for (const PartPiece& piece : sorter.splitter().pieces()) {
     EXPECT_EQ(piece.part, PartId(1u));

@@ -366,9 +366,13 @@ void CycleSplitter::Impl::joinAll() {
 }
 
 void CycleSplitter::setMayDivide(PartId part, bool may) {
+  const std::uint64_t generation = impl_->sorter->generationOf(part);
+  if (generation == 0) {
+    return;  // no part has this number, which may be the greatest one
+  }
   std::vector<std::uint64_t>& kept = impl_->kept_whole;
   kept.resize(std::max<std::size_t>(kept.size(), std::size_t{part.value} + 1));
-  kept[part.value] = may ? 0 : impl_->sorter->generationOf(part);
+  kept[part.value] = may ? 0 : generation;
 }
 
 void CycleSplitter::join(PartId part) {
