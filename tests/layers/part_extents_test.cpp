@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "src/layers/extents/angular_extent.h"
 #include "tests/layers/extent_scene.h"
 
 namespace sightline::layers::extent_tests {
@@ -464,26 +463,28 @@ TEST(PartExtents, OfAnOrthographicViewArePositionsAcrossIt) {
   EXPECT_NEAR(extents.table().at(0, 0).high, 4.0 / 13.0, 1e-5);
 }
 
-TEST(AngularExtent, DoesNotDependOnWhereTheSearchBegins) {
+// Searches begin at the last farthest vertices, also if those were of another view and of a hull with more
+// vertices.
+TEST(PartExtents, AnglesDoNotDependOnWhereTheSearchBegins) {
   Random random(11);
-  ExtentScene scene;
-  scene.addHull(shapes::toothpick(0.7));
-  scene.addHull(shapes::randomBall(random, 80));
+  ExtentScene toothpick, ball;
+  toothpick.addPart(shapes::toothpick(0.7));
+  ball.addPart(shapes::randomBall(random, 80));
+  const std::vector<ExtentAxis> axes = allKinds();
+  PartExtents warm(axes);
   for (int i = 0; i < 400; ++i) {
-    const ConvexHull& hull = scene.store.hulls[i % 2];
-    const auto count = static_cast<std::uint32_t>(hull.vertices.size());
-    const Vec3d x = random.direction(), z = normalized(cross(x, random.direction()));
-    PlaneMap map{x, z, {random.number(-3, 3), random.number(-3, 3)}, 1.0001, 1e-14, 0.0};
-    AngularVertices from_zero, last;
-    const AngleRange expected = angularExtent(hull, map, from_zero);
-    last = from_zero;
-    for (const std::uint32_t start : {0xffffffffu, count, count - 1, random.below(count)}) {
-      AngularVertices vertices{start, start, start};
-      const AngleRange range = angularExtent(hull, map, vertices);
-      EXPECT_NEAR(range.low, expected.low, 1e-9) << i;
-      EXPECT_NEAR(range.high, expected.high, 1e-9) << i;
+    const ExtentScene& scene = random.below(2) == 0 ? toothpick : ball;
+    const View view = randomView(random, random.direction() * random.number(0, 4), false);
+    warm.replaceHull(0, scene.store);
+    warm.update(view, scene.store, scene.moved, scene.used);
+    PartExtents fresh(axes);
+    fresh.update(view, scene.store, scene.moved, scene.used);
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      if (axes[axis].kind == Kind::kAngular) {
+        EXPECT_NEAR(warm.table().at(axis, 0).low, fresh.table().at(axis, 0).low, 1e-6) << i;
+        EXPECT_NEAR(warm.table().at(axis, 0).high, fresh.table().at(axis, 0).high, 1e-6) << i;
+      }
     }
-    EXPECT_EQ(angularExtent(hull, map, last).high, expected.high) << i;
   }
 }
 

@@ -3,31 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "src/layers/extents/angular_extent.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-#include "src/layers/extents/angular_extent-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace sightline::layers::HWY_NAMESPACE {
-
-AngleRange extentOf(const ConvexHull& hull, const PlaneMap& map, AngularVertices& start) {
-  return angularExtentHere(hull, map, start);
-}
-
-}  // namespace sightline::layers::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace sightline::layers {
-
-HWY_EXPORT(extentOf);
-
-AngleRange angularExtent(const ConvexHull& hull, const PlaneMap& map, AngularVertices& start) {
-  return HWY_DYNAMIC_DISPATCH(extentOf)(hull, map, start);
-}
 
 // Keeps the two ends of the angles of the vertices so far, which span less than half a turn.
 AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error, AngularVertices& ends) {
@@ -66,4 +42,3 @@ AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error
 }
 
 }  // namespace sightline::layers
-#endif

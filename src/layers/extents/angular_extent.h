@@ -33,10 +33,9 @@ struct AngularVertices {
   std::uint32_t nearest = 0;        // the nearest vertex along a reference direction
 };
 
-// Returns a range that contains the exact angles of all input points of the hull. It is the full circle if
-// the eye lies in the hull's image or too near to it for rounding to tell.
-AngleRange angularExtent(const ConvexHull& hull, const PlaneMap& map, AngularVertices& start);
-// Does the same by comparing all vertices. error: as errorOf() returns it. ends: receives the vertices found.
+// Returns a range that contains the exact angles of all input points of the hull, by comparing all vertices.
+// It is the full circle if the eye lies in the hull's image or too near to it for rounding to tell. error: as
+// errorOf() returns it. ends: receives the vertices found.
 AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error, AngularVertices& ends);
 
 // Returns a bound of the error of the ends, as a length in the plane; angular_extent-inl.h derives it.
