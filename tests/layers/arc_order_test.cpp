@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
-#include "tests/layers/graph_source.h"
+#include "tests/layers/strong_components.h"
 
 namespace sightline {
 namespace {
@@ -50,15 +51,14 @@ TEST(ArcSorter, GroupsAreTheStrongComponentsOfTheArcsAndComeFrontToBack) {
     const std::uint32_t count = 30;
     FlatOrder flat(count);
     std::vector<LayerArc> arcs;
-    boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> graph(count);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (std::uint32_t i = 0; i < 10 + seed; ++i) {
       const auto front = static_cast<std::uint32_t>(random() % count);
       const auto back = static_cast<std::uint32_t>(random() % count);
       arcs.push_back(arcOf(front, back));
-      boost::add_edge(front, back, graph);
+      pairs.emplace_back(front, back);
     }
-    std::vector<int> component(count);
-    boost::strong_components(graph, component.data());
+    const std::vector<std::uint32_t> component = test::strongComponents(count, pairs);
     ArcSorter sorter;
     const LayerOrder& order = sorter.sort(flat.order, arcs);
     ASSERT_EQ(order.parts.size(), count);

@@ -3,17 +3,17 @@
 // An occlusion graph for tests of sorts, and an independent check of sorted orders.
 
 #include <algorithm>
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/strong_components.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "src/layers/sort/occluder_source.h"
+#include "tests/layers/strong_components.h"
 
 namespace sightline::layers {
 
@@ -94,21 +94,15 @@ class GraphSource : public OccluderSource {
   std::vector<std::uint8_t> active_, member_;
 };
 
-// Returns the strongly connected component of each part, found by Boost.
+// Returns the strongly connected component of each part.
 inline std::vector<std::uint32_t> componentsOf(const GraphSource& graph) {
-  using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
-  Graph boost_graph(graph.parts());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   for (std::uint32_t back = 0; back < graph.parts(); ++back) {
     for (const std::uint32_t front : graph.occludersOf(back)) {
-      boost::add_edge(front, back, boost_graph);
+      arcs.emplace_back(front, back);
     }
   }
-  std::vector<std::uint32_t> component(graph.parts());
-  if (!component.empty()) {
-    boost::strong_components(boost_graph, boost::make_iterator_property_map(
-                                              component.begin(), get(boost::vertex_index, boost_graph)));
-  }
-  return component;
+  return test::strongComponents(static_cast<std::uint32_t>(graph.parts()), arcs);
 }
 
 // Returns what is wrong with an order of all parts of the graph, or an empty text. component:
