@@ -253,10 +253,10 @@ TEST(LayerSorter, FindsTheSameFarFromTheOriginAndAtPowersOfTwo) {
     Random random(seed);
     const MadeScene scene = randomScene(random, 6, 6);
     const Truth truth = truthOf(scene);
-    for (const Way& way : allWays(true)) {
-      for (const auto& [scale, shift] : {std::pair(1.0, 0x1p20), {0x1p-20, 0.0}, {0x1p20, 0.0}}) {
+    for (const auto& [scale, shift] : {std::pair(1.0, 0x1p20), {0x1p-20, 0.0}, {0x1p20, 0.0}}) {
+      const MadeScene other = mapped(scene, scale, shift);
+      for (const Way& way : allWays(true)) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed << ", " << way.name << ", scale " << scale);
-        const MadeScene other = mapped(scene, scale, shift);
         LayerSorter sorter = sorterOf(other, way.settings);
         expectTrue(Answer(sorter.update(other.view)), truth, true);
         ASSERT_FALSE(HasFailure());

@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/strong_components.hpp>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "sightline/layers/layer_sorter.h"
 #include "tests/layers/sorter_choices.h"
+#include "tests/layers/strong_components.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
@@ -52,10 +54,28 @@ inline std::vector<Points> placed(const MadePart& part) {
   return hulls;
 }
 
+// Returns the hull of some points. Hulls are kept, since a scene's parts are added to many sorters.
+inline ConvexHull builtOf(const Points& points) {
+  constexpr std::size_t kMaxKept = 1000;
+  static std::map<std::vector<std::array<double, 3>>, ConvexHull> kept;
+  std::vector<std::array<double, 3>> key;
+  for (const Vec3d& p : points) {
+    key.push_back({p.x, p.y, p.z});
+  }
+  const auto found = kept.find(key);
+  if (found != kept.end()) {
+    return found->second;
+  }
+  if (kept.size() == kMaxKept) {
+    kept.clear();
+  }
+  return kept.emplace(std::move(key), buildHull(points).value()).first->second;
+}
+
 inline PartId addMade(LayerSorter& sorter, const MadePart& part) {
   std::vector<HullId> hulls;
   for (const Points& points : part.hulls) {
-    hulls.push_back(sorter.addHull(buildHull(points).value()));
+    hulls.push_back(sorter.addHull(builtOf(points)));
   }
   const PartId id = sorter.addPart(hulls, part.settings);
   EXPECT_TRUE(sorter.setTransform(id, part.world_from_part));
@@ -129,15 +149,8 @@ struct Truth {
 
 inline std::set<Group> strongComponents(const std::vector<std::uint32_t>& parts,
                                         const std::vector<Pair>& arcs) {
-  boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> graph(parts.empty() ? 0
-                                                                                        : parts.back() + 1);
-  for (const Pair& arc : arcs) {
-    boost::add_edge(arc.first, arc.second, graph);
-  }
-  std::vector<std::size_t> component(boost::num_vertices(graph));
-  if (!component.empty()) {
-    boost::strong_components(graph, component.data());
-  }
+  const std::vector<std::uint32_t> component =
+      test::strongComponents(parts.empty() ? 0 : parts.back() + 1, arcs);
   std::vector<Group> groups(component.size());
   for (const std::uint32_t part : parts) {
     groups[component[part]].push_back(part);
