@@ -162,6 +162,28 @@ inline std::size_t largestGroupOfWhole(const std::vector<Thing>& things, const V
   return largestGroup(sorter.update(view));
 }
 
+// A ball around a thing in the world.
+struct Ball {
+  Vec3d centre;
+  double radius = 0.0;
+};
+
+inline std::vector<Ball> ballsAround(const std::vector<Thing>& things) {
+  std::vector<Ball> balls;
+  for (const Thing& thing : things) {
+    Points points = pointsOf(thing);
+    Ball& ball = balls.emplace_back();
+    for (Vec3d& point : points) {
+      point = transformPoint(thing.world_from_part, point);
+      ball.centre += point / static_cast<double>(points.size());
+    }
+    for (const Vec3d& point : points) {
+      ball.radius = std::max(ball.radius, length(point - ball.centre) * (1.0 + 1e-9));
+    }
+  }
+  return balls;
+}
+
 // Where a ray hits a triangle of a thing.
 struct Hit {
   double distance = 0.0;
@@ -169,9 +191,14 @@ struct Hit {
   Vec3d in_part;
 };
 
-inline std::vector<Hit> hitsOf(const std::vector<Thing>& things, const Vec3d& from, const Vec3d& direction) {
+// balls: of the things. direction: of length 1.
+inline std::vector<Hit> hitsOf(const std::vector<Thing>& things, std::span<const Ball> balls,
+                               const Vec3d& from, const Vec3d& direction) {
   std::vector<Hit> hits;
   for (std::uint32_t part = 0; part < things.size(); ++part) {
+    if (length(cross(balls[part].centre - from, direction)) > balls[part].radius) {
+      continue;  // the ray misses the ball
+    }
     for (const Triangle& t : things[part].triangles) {
       const Mat4& m = things[part].world_from_part;
       const Vec3d a = transformPoint(m, t[0]), ab = transformPoint(m, t[1]) - a,
@@ -230,6 +257,7 @@ inline std::size_t expectRaysInOrder(const std::vector<Thing>& things, std::span
       group_of[part.value] = i;
     }
   }
+  const std::vector<Ball> balls = ballsAround(things);
   std::size_t pairs = 0;
   for (int i = 0; i < rays; ++i) {
     // At a point of some thing, so that most rays hit.
@@ -240,7 +268,7 @@ inline std::size_t expectRaysInOrder(const std::vector<Thing>& things, std::span
     const Vec3d from = view.orthographic ? at - view.forward * 1000.0 : view.eye;
     const Vec3d direction = normalized(at - from);
     const Hit* before = nullptr;
-    const std::vector<Hit> hits = hitsOf(things, from, direction);
+    const std::vector<Hit> hits = hitsOf(things, balls, from, direction);
     std::size_t last_group = 0;
     for (const Hit& hit : hits) {
       if (isNearAPlane(pieces, hit.part, hit.in_part)) {
