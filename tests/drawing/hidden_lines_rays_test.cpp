@@ -258,7 +258,7 @@ TEST(HiddenLinesRays, AgreeOnABuildingModel) {
 }
 
 TEST(HiddenLinesRays, AgreeOnACityModel) {
-  checkReal("ingolstadt_lod3", 1);
+  checkReal("ingolstadt_lod3", 13);
 }
 
 }  // namespace
