@@ -29,6 +29,15 @@ namespace {
 
 using Place = PartSettings::Place;
 
+constexpr std::uint32_t kNoPart = 0xffffffffu;
+
+// Whether a part's number is in a list, in which those of removed parts stay for a while.
+enum Listed : std::uint8_t {
+  kNotListed,
+  kIsListed,
+  kWasListed,  // a removed part of this number is in the list
+};
+
 LayerSettings checked(LayerSettings settings) {
   if (settings.extents.size() > kMaxExtentAxes) {
     settings.extents.resize(kMaxExtentAxes);
@@ -79,6 +88,7 @@ struct LayerSorter::Impl {
   bool isPart(PartId part) const;
   bool isEnabled(std::uint32_t part) const { return enabled[part] != 0 && removed[part] == 0; }
   bool areParts(PartId first, PartId second) const { return isPart(first) && isPart(second); }
+  void keepFree(std::uint32_t part);
   std::uint32_t makeRoom(std::size_t hulls);
   void chooseParts(const View& view, bool one_eye);
   void place(const View& view);
@@ -96,7 +106,12 @@ struct LayerSorter::Impl {
   std::vector<PartSettings> part_settings;
   // One element per part; sorted: it has been in an update(); to_sort: it is in the order of this one.
   std::vector<std::uint8_t> enabled, moved, sorted, to_sort, removed;
-  std::vector<std::uint32_t> free_parts;   // numbers of removed parts
+  // Numbers of removed parts, by how many hulls these have, in the order of removal: lists through next_free.
+  struct FreeParts {
+    std::uint32_t first = kNoPart, last = kNoPart;
+  };
+  std::vector<FreeParts> free_parts;
+  std::vector<std::uint32_t> next_free;    // one per part
   std::vector<std::uint64_t> generations;  // one per part: how many had been added with it
   std::uint64_t added = 0;                 // parts so far
   PairRules rules;
@@ -107,7 +122,7 @@ struct LayerSorter::Impl {
   ConditioningSort conditioning;
 
   std::vector<std::uint32_t> previous;    // parts to be sorted, in the last frame's order
-  std::vector<std::uint8_t> listed;       // one per part: whether it is in `previous`
+  std::vector<Listed> listed;             // one per part: whether it is in `previous`
   std::vector<std::uint32_t> candidates;  // scratch for addArcsOf()
   std::vector<double> distances;          // one per part
   std::vector<double> group_distances;
@@ -161,13 +176,20 @@ bool LayerSorter::setHull(HullId hull, ConvexHull shape) {
   return true;
 }
 
+void LayerSorter::Impl::keepFree(std::uint32_t part) {
+  const std::size_t hulls = store.hullsOf(part).size();
+  free_parts.resize(std::max(free_parts.size(), hulls + 1));
+  FreeParts& list = free_parts[hulls];
+  (list.first == kNoPart ? list.first : next_free[list.last]) = part;
+  list.last = part;
+  next_free[part] = kNoPart;
+}
+
 // The number of a removed part with so many hulls, or of a new one. The caller sets all that belongs to it.
 std::uint32_t LayerSorter::Impl::makeRoom(std::size_t hulls) {
-  const auto room = std::find_if(free_parts.begin(), free_parts.end(),
-                                 [&](std::uint32_t part) { return store.hullsOf(part).size() == hulls; });
-  if (room != free_parts.end()) {
-    const std::uint32_t part = *room;
-    free_parts.erase(room);
+  if (hulls < free_parts.size() && free_parts[hulls].first != kNoPart) {
+    const std::uint32_t part = free_parts[hulls].first;
+    free_parts[hulls].first = next_free[part];
     return part;
   }
   store.part_hulls.resize(store.part_hulls.size() + hulls);
@@ -177,7 +199,9 @@ std::uint32_t LayerSorter::Impl::makeRoom(std::size_t hulls) {
   store.finite.resize(parts);
   part_settings.resize(parts);
   generations.resize(parts);
-  for (std::vector<std::uint8_t>* const flags : {&enabled, &moved, &sorted, &listed, &removed}) {
+  next_free.resize(parts);
+  listed.resize(parts);
+  for (std::vector<std::uint8_t>* const flags : {&enabled, &moved, &sorted, &removed}) {
     flags->resize(parts);
   }
   return static_cast<std::uint32_t>(parts - 1);
@@ -208,11 +232,10 @@ void LayerSorter::removePart(PartId part) {
   }
   own.rules.clear(part.value);
   own.removed[part.value] = 1;
-  own.free_parts.push_back(part.value);
+  own.keepFree(part.value);
   // A new part of this number begins at its own place in the order.
-  if (own.listed[part.value] != 0) {
-    own.listed[part.value] = 0;
-    std::erase(own.previous, part.value);
+  if (own.listed[part.value] == kIsListed) {
+    own.listed[part.value] = kWasListed;
   }
 }
 
@@ -346,7 +369,7 @@ void LayerSorter::rebuildSearch() {
 
 void LayerSorter::reset() {
   impl_->previous.clear();
-  std::fill(impl_->listed.begin(), impl_->listed.end(), 0);
+  std::fill(impl_->listed.begin(), impl_->listed.end(), kNotListed);
 }
 
 // Distance from the eye to the mean of the hulls' centres; in an orthographic view along the forward
@@ -390,14 +413,14 @@ void LayerSorter::Impl::chooseParts(const View& view, bool one_eye) {
 // Brings `previous` up to date: the last order without removed parts, then new parts by distance.
 void LayerSorter::Impl::place(const View& view) {
   const auto gone = std::remove_if(previous.begin(), previous.end(), [&](std::uint32_t part) {
-    listed[part] = to_sort[part];
-    return listed[part] == 0;
+    listed[part] = listed[part] == kIsListed && to_sort[part] != 0 ? kIsListed : kNotListed;
+    return listed[part] == kNotListed;
   });
   previous.erase(gone, previous.end());
   const std::size_t known = previous.size();
   for (std::uint32_t part = 0; part < store.parts(); ++part) {
-    if (listed[part] == 0 && to_sort[part] != 0) {
-      listed[part] = 1;
+    if (listed[part] == kNotListed && to_sort[part] != 0) {
+      listed[part] = kIsListed;
       previous.push_back(part);
     }
   }
