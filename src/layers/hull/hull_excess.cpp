@@ -9,6 +9,7 @@
 #include "src/layers/hull/hull_excess.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -40,6 +41,25 @@ std::vector<Behind> quickPlanes(const HullMesh& mesh, const Vec3d& inside, doubl
   return planes;
 }
 
+bool isBefore(const Vec3d& a, const Vec3d& b) {
+  return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+}
+
+// Returns where the mesh has corners, in order. The mesh is exactly convex, so no point there is above it. To
+// compare all corners with all facets would take time quadratic in their number, and in a round mesh each
+// point is a corner or a copy of one.
+std::vector<Vec3d> sortedCorners(const HullMesh& mesh) {
+  std::vector<Vec3d> corners;
+  for (const HullMesh::Facet& facet : mesh.facets()) {
+    for (std::size_t i = 0; facet.live && i < 3; ++i) {
+      corners.push_back(mesh.at(facet.corner[i]));
+    }
+  }
+  std::sort(corners.begin(), corners.end(), isBefore);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
 }  // namespace
 
 HullExcess hullExcess(const HullMesh& mesh, std::span<const Vec3d> points, const Vec3d& inside) {
@@ -52,10 +72,12 @@ HullExcess hullExcess(const HullMesh& mesh, std::span<const Vec3d> points, const
   for (const Behind& plane : planes) {
     all_behind = std::min(all_behind, plane.offset);
   }
+  const std::vector<Vec3d> corners = sortedCorners(mesh);
   HullExcess worst;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3d from_inside = points[i] - inside;
-    if (length(from_inside) * (1.0 + 0x1p-40) < all_behind) {
+    if (length(from_inside) * (1.0 + 0x1p-40) < all_behind ||
+        std::binary_search(corners.begin(), corners.end(), points[i], isBefore)) {
       continue;
     }
     for (const Behind& plane : planes) {
