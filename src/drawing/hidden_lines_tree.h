@@ -73,8 +73,8 @@ class HidingTrees {
  private:
   struct Node {
     HidingBox box;
-    std::uint32_t first =
-        0;  // a leaf's first entry in ids_; an inner node's second child (the first child follows it)
+    // The first entry of a leaf in ids_, or the second child of an inner node (the first child follows it).
+    std::uint32_t first = 0;
     std::uint32_t count = 0;  // a leaf's entries; 0 in inner nodes
   };
   static constexpr std::size_t kLeaf = 4;

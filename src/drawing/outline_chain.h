@@ -47,8 +47,8 @@ class OutlineChain {
 
   std::vector<Edge> edges_;
   std::vector<Step> steps_;  // ascending by `from`
-  std::vector<std::size_t>
-      next_;  // for the first step of each point: the point's first step that may be unused
+  // For the first step of each point, the point's first step that may be unused.
+  std::vector<std::size_t> next_;
 };
 
 }  // namespace sightline::drawing

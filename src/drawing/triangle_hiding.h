@@ -2,8 +2,7 @@
 
 // Finds the part of a line that a triangle hides.
 //
-// In camera space, with the eye at zero, a point X = a + t (b - a) is hidden by the triangle p, q, r if it
-// lies
+// In camera space, with the eye at zero, a point X = a + t (b - a) is hidden by the triangle p, q, r if X is
 //   - inside the pyramid of the eye and the edges (orthographic: the prism along z): (p x q) . X >= 0, and
 //     likewise for the other edges,
 //   - behind the plane: n . (X - p) > 0,

@@ -50,7 +50,8 @@ struct DrawingSettings {
   double page_height = 720.0;
   // For plots: the parts that the sorter draws in front of or behind all others (PartSettings::place). The
   // sorter has no arcs of them, so all lines are tested against all overlays, and lines of a backdrop against
-  // everything. Depth still decides what is hidden.
+  // everything. Depth still decides what is hidden. Parts that are left to a depth buffer have no arcs
+  // either: name them in both lists.
   std::vector<ObjectId> overlays{}, backdrops{};
   // For the painter's form: within groups of the order only the arcs count from what may be seen on the page
   // to what may lie behind it there, so that groups are smaller. order.arcs must hold all pairs
@@ -75,7 +76,8 @@ class HiddenLineRenderer {
   // The painter's form (Snyder, Lengyel, section 11): groups from back to front, with each object's outline
   // filled so that it hides what is behind. A line is tested against its own object and those of its group
   // that may occlude it (order.arcs), so the strokes of an object that hides nothing of itself stay whole.
-  // Blended and alpha-tested objects hide nothing: they have strokes and no outline. scene must be the
+  // Blended and alpha-tested objects hide nothing: they have strokes and no outline. All parts must be
+  // sorted, overlays or backdrops, for those left to a depth buffer have no order. scene must be the
   // constructor's, except for positions. names has one entry for each object; missing ones are empty.
   Drawing paint(const SceneView& scene, std::span<const std::string> names, const View& view,
                 const LayerOrder& order, const DrawingSettings& settings);

@@ -6,18 +6,15 @@
 // file stores it: faces that are reversed, doubled, cut up or not welded give the same lines.
 //
 //   - A face is drawn if it turns its front to the eye; with a double-sided material also if it turns its
-//   back. A face
-//     seen edge on, within the rounding of double precision, is not drawn. An edge of which no face is drawn
-//     is not a line: an open single-sided sheet has no lines from behind.
+//     back. A face seen edge on, within the rounding of double precision, is not drawn. An edge of which no
+//     face is drawn is not a line: an open single-sided sheet has no lines from behind.
 //   - Corners of an object at the same place are one corner. If a corner lies on an edge that no other face
-//   shares
-//     (within 2^-21 of the object's largest coordinate), the edge is cut there: T-junctions make no lines.
+//     shares (within 2^-21 of the object's largest coordinate), the edge is cut there: T-junctions make no
+//     lines.
 //   - Faces at an edge that lie on one another (doubled, or back to back) count as one, whatever their
-//   winding. Angles
-//     are measured as if both surfaces were wound alike.
+//     winding. Angles are measured as if both surfaces were wound alike.
 //   - Between two faces that are coplanar, as far as single precision can tell, there is no line of any kind,
-//   at any
-//     crease_deg, from any eye.
+//     at any crease_deg, from any eye.
 //   - Triangles without area, thinner than that 2^-21, or with coordinates that are not finite are left out.
 
 #include <cstdint>
@@ -35,11 +32,13 @@ class EdgeBuilder;
 }
 
 enum class LineKind : std::uint8_t {
-  kCrease,      // between faces whose normals differ by at least crease_deg; a drawn one is enough
-  kSilhouette,  // the object lies on one side of the line only: between a face seen from its front and one
-                // seen
-  // from its back. A face seen edge on lies on neither side
-  kBoundary,  // of one face alone, or of more than two faces
+  // The line is between faces whose normals differ by at least crease_deg; one that is drawn is enough.
+  kCrease,
+  // The object lies on one side of the line only: between a face seen from its front and one seen from its
+  // back. A face seen edge on lies on neither side.
+  kSilhouette,
+  // The line is of one face alone, or of more than two faces.
+  kBoundary,
 };
 
 struct FeatureSettings {
@@ -49,8 +48,8 @@ struct FeatureSettings {
 
 struct FeatureLine {
   std::uint32_t a = 0, b = 0;  // indices into SceneView::positions, a < b
-  LineKind kind =
-      LineKind::kCrease;  // of several the first asked for, in the order boundary, silhouette, crease
+  // A line of several kinds has the first that is asked for, in the order boundary, silhouette, crease.
+  LineKind kind = LineKind::kCrease;
   friend bool operator==(const FeatureLine&, const FeatureLine&) = default;
 };
 

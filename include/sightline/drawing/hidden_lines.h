@@ -38,18 +38,15 @@ struct HiddenLineStats {
 // that a triangle hides is the solution of linear inequalities in the line's share, also if triangle or line
 // reach behind the near plane. Rounding is treated so:
 //   - A point nearer to a triangle's plane than 2^-21 of the largest coordinate of triangle or line (twice
-//   the rounding
-//     of single precision) lies in the plane. A triangle does not hide what lies in its plane. A line that
-//     leaves the plane backwards is hidden from the plane on.
+//     the rounding of single precision) lies in the plane. A triangle does not hide what lies in its plane. A
+//     line that leaves the plane backwards is hidden from the plane on.
 //   - A point that touches the triangle's border in the picture, within 2^-48 of the sizes that it is
-//   computed from, is
-//     covered, so that adjacent triangles leave no gap.
+//     computed from, is covered, so that adjacent triangles leave no gap.
 //   - Pieces beside hidden stretches are left out if they are shorter than 2^-18 of the page's height; hidden
-//   stretches
-//     shorter than that do not divide a piece.
+//     stretches shorter than that do not divide a piece.
 // Triangles with the eye in their plane, without area, or with corners that are not finite hide nothing.
-// Lines with ends that are not finite give no pieces, nor do lines of an invalid view (numbers that are not
-// finite, near <= 0, far <= near, no size).
+// Lines with ends that are not finite give no pieces, nor do lines of an invalid view: z_near is not
+// positive, z_far is not beyond it, there is no size, or a number other than z_far is not finite.
 class HiddenLines {
  public:
   HiddenLines();

@@ -36,9 +36,10 @@ inline constexpr std::size_t kMaxMoreEyes = 0xffff;
 
 // What is kept of a pair from one test to the next.
 struct PairWitness {
-  static constexpr std::uint32_t kEye =
-      0xffffffffu;  // vertex number of the eye; of more_eyes[i]: kEye - 1 - i
-  static constexpr std::uint32_t kSweptBit = 0x80000000u;  // in a vertex number: the far end of its segment
+  // The vertex number of the eye; that of more_eyes[i] is kEye - 1 - i.
+  static constexpr std::uint32_t kEye = 0xffffffffu;
+  // In a vertex number, this bit stands for the far end of the vertex's segment.
+  static constexpr std::uint32_t kSweptBit = 0x80000000u;
 
   static constexpr bool isEye(std::uint32_t vertex) { return vertex >= kEye - kMaxMoreEyes; }
 

@@ -17,9 +17,8 @@ struct Direction2 {
 };
 
 // Returns the unit vector at a fraction of a full turn. Uses only sums and products, so the bits are the same
-// on every
-// machine: a Taylor series for at most an eighth of a turn, accurate to the last bit or two, and exact
-// quarter turns.
+// on every machine: a Taylor series for at most an eighth of a turn, accurate to the last bit or two, and
+// exact quarter turns.
 Direction2 atTurns(double turns) {
   const double quarters = std::floor(turns * 4.0 + 0.5);
   const double a = (turns - quarters * 0.25) * (2.0 * std::numbers::pi);
