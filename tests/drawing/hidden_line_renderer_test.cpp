@@ -414,6 +414,22 @@ TEST(HiddenLineRenderer, BackdropsAndOverlaysFollowTheOrder) {
   }
 }
 
+// The sorter has no arcs of parts that are left to a depth buffer, as of overlays and backdrops.
+TEST(HiddenLineRenderer, PlotsWhatIsLeftToADepthBufferAsOverlayAndBackdrop) {
+  Set set;
+  set.add(test::block({-2, -2, -9}, {2, 2, -8}), true, PartSettings::Place::kDepthBuffered);
+  set.add(test::block({-1, -1, -1}, {1, 1, 1}));
+  set.add(test::block({0, 0, 3}, {0.5f, 0.5f, 3.5f}), true, PartSettings::Place::kDepthBuffered);
+  const std::vector<ObjectId> depth_buffered{ObjectId(0u), ObjectId(2u)};
+  const Drawing plot = set.plot(
+      viewFromFront(), {.page_height = kHeight, .overlays = depth_buffered, .backdrops = depth_buffered});
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(lengthOfAll(strokesOf(plot, i)),
+                visibleLengthAgainstAll(set.moving.scene, viewFromFront(), ObjectId(i)), 0.05)
+        << i;
+  }
+}
+
 TEST(HiddenLineRenderer, LeavesOutWhatIsNotOnThePage) {
   Set set;
   set.add(test::block({-1, -1, -1}, {1, 1, 1}));
