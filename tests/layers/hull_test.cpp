@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -368,7 +370,10 @@ TEST(Hull, SaysWhatIsWrong) {
   EXPECT_FALSE(buildHull(Points{{0, 0, std::numeric_limits<double>::infinity()}}));
   EXPECT_FALSE(buildHull(Points{{0, -1.1e100, 0}}));
   EXPECT_TRUE(buildHull(Points{{0, -1e100, 0}}));
-  EXPECT_FALSE(buildHull(Points((1u << 24) + 1)));
+  // Too many points are refused before any is read, so their memory is never written.
+  constexpr std::size_t kTooMany = (std::size_t{1} << 24) + 1;
+  const auto memory = std::make_unique_for_overwrite<std::byte[]>(kTooMany * sizeof(Vec3d));
+  EXPECT_FALSE(buildHull({reinterpret_cast<const Vec3d*>(memory.get()), kTooMany}));
 }
 
 TEST(Hull, WritesNothing) {
