@@ -203,6 +203,7 @@ TEST(EyeSets, SweptPartsHaveAnOrderThatHoldsAtAllTimes) {
     }
     const Answer answer(sorter.update(first.view, {&last.view.eye, 1}));
     groups += answer.in_order.size();
+    const Answer at_first(sorterOf(first, {.arcs = LayerArcs::kAll}).update(first.view));
     for (int time = 0; time <= kTimes; ++time) {
       const double t = static_cast<double>(time) / kTimes;
       MadeScene now = first;
@@ -216,7 +217,6 @@ TEST(EyeSets, SweptPartsHaveAnOrderThatHoldsAtAllTimes) {
       const Truth truth = made::truthOf(now);
       pairs += truth.arcs.size();
       expectNothingMissing(answer, truth);
-      const Answer at_first(sorterOf(first, {.arcs = LayerArcs::kAll}).update(first.view));
       for (const Pair& arc : truth.arcs) {
         crossings += at_first.hasArc(arc.first, arc.second) ? 0 : 1;
       }
