@@ -46,12 +46,6 @@ void DecimalGrid::append(std::string& text, std::int64_t steps) const {
   }
 }
 
-std::string DecimalGrid::text(double value) const {
-  std::string text;
-  append(text, round(value));
-  return text;
-}
-
 std::string DecimalGrid::lengthText(double value) const {
   std::string text;
   append(text, value > 0.0 ? std::max<std::int64_t>(round(value), 1) : 0);

@@ -32,7 +32,6 @@ class DecimalGrid {
   std::int64_t round(double value) const;  // in steps of the grid; 0 if the value is not finite
   // Appends a decimal number without superfluous digits: "12", "-.5".
   void append(std::string& text, std::int64_t steps) const;
-  std::string text(double value) const;
   // The text of a length. A length that is not zero is at least one step.
   std::string lengthText(double value) const;
 

@@ -148,11 +148,6 @@ void Outliner::toPage(const std::vector<GridPath>& loops, std::vector<PagePath>&
   }
 }
 
-void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath>& rings) {
-  outline(scene, id, loops_);
-  toPage(loops_, rings);
-}
-
 GridPath Outliner::page() const {
   const double lines = view_.pageScale() * scale_;
   const std::int64_t width = std::llround((view_.right() - view_.left()) * lines),

@@ -29,11 +29,8 @@ class Outliner {
   void setView(const View& view, double page_height);
 
   // Replaces `rings` by the outer borders and holes of what the object draws between the near and the far
-  // plane, to be filled even-odd. The first corner is not repeated. Backs of single-sided materials are not
-  // drawn. Triangles with a corner that is not finite are left out.
-  void outline(const SceneView& scene, ObjectId object, std::vector<PagePath>& rings);
-
-  // The same, as rings on the grid.
+  // plane, on the grid, to be filled even-odd. The first corner is not repeated. Backs of single-sided
+  // materials are not drawn. Triangles with a corner that is not finite are left out.
   void outline(const SceneView& scene, ObjectId object, std::vector<GridPath>& rings);
 
   // Sets `hull` to a convex ring, on the grid, around the image of the object, whatever of it is drawn; it
@@ -47,8 +44,6 @@ class Outliner {
 
   // The page without its margin, as a ring on the grid.
   GridPath page() const;
-  // Grid lines for each page unit.
-  double gridScale() const { return scale_; }
   // Rings on the grid as rings on the page.
   void toPage(const std::vector<GridPath>& loops, std::vector<PagePath>& rings) const;
 
@@ -69,7 +64,6 @@ class Outliner {
   std::vector<Corner> polygon_, scratch_;
   std::vector<GridPoint> ring_;
   OutlineChain chain_;
-  std::vector<GridPath> loops_;
 };
 
 }  // namespace sightline::drawing

@@ -73,13 +73,13 @@ void PdfFile::add(std::size_t number, std::string_view body) {
   fmt::format_to(std::back_inserter(bytes_), "{} 0 obj\n{}\nendobj\n", number, body);
 }
 
-void PdfFile::addStream(std::size_t number, std::string_view bytes, std::string_view entries) {
+void PdfFile::addStream(std::size_t number, std::string_view bytes) {
   const std::string packed = deflated(bytes);
   const std::string_view stored = packed.empty() ? bytes : packed;
   const std::string_view filter = packed.empty() ? "" : " /Filter /FlateDecode";
   offsets_[number - 1] = bytes_.size();
-  fmt::format_to(std::back_inserter(bytes_), "{} 0 obj\n<< /Length {}{}{} >>\nstream\n", number,
-                 stored.size(), filter, entries);
+  fmt::format_to(std::back_inserter(bytes_), "{} 0 obj\n<< /Length {}{} >>\nstream\n", number, stored.size(),
+                 filter);
   bytes_ += stored;
   bytes_ += "\nendstream\nendobj\n";
 }

@@ -20,8 +20,8 @@ class PdfFile {
   std::size_t reserve();
   // Adds an object. Each reserved number is added exactly once, in any order.
   void add(std::size_t number, std::string_view body);
-  // Adds a compressed stream; `entries` are added to its dictionary, which has its length and its filter.
-  void addStream(std::size_t number, std::string_view bytes, std::string_view entries = "");
+  // Adds a compressed stream, whose dictionary has its length and its filter.
+  void addStream(std::size_t number, std::string_view bytes);
   // Returns the whole file. Called once, at the end.
   std::string finish(std::size_t catalogue, std::size_t info);
 

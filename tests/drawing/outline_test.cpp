@@ -59,8 +59,10 @@ struct OneObject {
     Outliner outliner;
     EXPECT_TRUE(isDrawable(view, page_height));
     outliner.setView(view, page_height);
+    std::vector<GridPath> on_grid;
+    outliner.outline(scene.view(), ObjectId{0u}, on_grid);
     std::vector<PagePath> rings;
-    outliner.outline(scene.view(), ObjectId{0u}, rings);
+    outliner.toPage(on_grid, rings);
     return rings;
   }
 };

@@ -149,7 +149,6 @@ TEST(Evaluate, OfATargetWithoutPixelsDoesNothing) {
 }
 
 TEST(Evaluate, RefusesWhatDoesNotFitAndLeavesTheTarget) {
-  const Fixture good(CompositingForm::kCheapest);
   const auto refused = [&](auto change) {
     Fixture f(CompositingForm::kCheapest);
     Pixels result(kStride * kHeight, ShapedPixel{9, 9, 9, 9}), scratch(64);

@@ -62,15 +62,6 @@ TEST(PairTable, NothingExpiresWhenNeverIsAskedFor) {
   EXPECT_EQ(table.use(1, 2, Question::kIntersection).witness.first[0], 9u);
 }
 
-TEST(PairTable, ClearForgetsAll) {
-  PairTable table;
-  table.beginFrame(1);
-  table.use(1, 2, Question::kIntersection).witness.first[0] = 9;
-  table.clear();
-  EXPECT_EQ(table.size(), 0u);
-  EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection).witness));
-}
-
 // The expected content of the table, kept in a plain map.
 struct Model {
   using Key = std::tuple<std::uint32_t, std::uint32_t, Question>;

@@ -529,7 +529,6 @@ TEST(PartOcclusion, KnownPairsExpire) {
   const std::uint32_t a = world.addPart({shapes::cube({0, 0, 5})});
   const std::uint32_t b = world.addPart({shapes::cube({0, 0, 15})});
   for (const std::uint32_t expiry : {0u, 1u, 3u}) {
-    world.occlusion.clear();
     world.beginFrame(expiry);
     EXPECT_EQ(world.occlusion.knownPairs(), 0u);
     world.occlusion.occludes(a, b);

@@ -45,11 +45,6 @@ void PairIndex::keepOnly(const std::vector<std::uint8_t>& keep) {
   }
 }
 
-void PairIndex::clear() {
-  keys_.clear();
-  fillSlots();
-}
-
 void PairIndex::fillSlots() {
   std::fill(slots_.begin(), slots_.end(), kNone);
   for (std::size_t i = 0; i < keys_.size(); ++i) {

@@ -27,7 +27,6 @@ class PairIndex {
   void add(const PairKey& key);
   // Removes the keys with keep[number] == 0 and renumbers the others in order. keep: one per key.
   void keepOnly(const std::vector<std::uint8_t>& keep);
-  void clear();
 
  private:
   // Returns the slot of the key, or the free slot where it belongs.

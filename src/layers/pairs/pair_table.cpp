@@ -50,10 +50,4 @@ PairTable::Used PairTable::use(std::uint32_t a, std::uint32_t b, Question questi
   return {witnesses_[entry], again};
 }
 
-void PairTable::clear() {
-  index_.clear();
-  witnesses_.clear();
-  last_used_.clear();
-}
-
 }  // namespace sightline::layers

@@ -33,7 +33,6 @@ class PairTable {
   };
   Kept find(std::uint32_t a, std::uint32_t b, Question question) const;
   std::size_t size() const { return index_.size(); }
-  void clear();
 
  private:
   PairIndex index_;

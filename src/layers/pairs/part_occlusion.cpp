@@ -40,10 +40,6 @@ void PartOcclusion::beginFrame(const View& view, const PartStore& parts, const E
   counts_ = {};
 }
 
-void PartOcclusion::clear() {
-  table_.clear();
-}
-
 bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
   if (!view_is_finite_ || parts_->finite[front] == 0 || parts_->finite[back] == 0) {
     return true;

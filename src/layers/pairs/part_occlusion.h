@@ -52,8 +52,6 @@ class PartOcclusion {
   std::uint64_t pairQueries() const { return pair_queries_; }  // pairs whose hulls were tested in this frame
   const PairCounts& counts() const { return counts_; }         // counts of this frame
   std::size_t knownPairs() const { return table_.size(); }
-  // Forgets the results of all pairs.
-  void clear();
 
  private:
   enum class Verdict : std::uint8_t { kOpen, kOccludes, kDoesNot };
