@@ -15,7 +15,6 @@ using Frame = ExtentAxis::Frame;
 using shapes::Random;
 
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
-constexpr long double kHalfTurn = 3.14159265358979323846264338327950288L;
 
 std::vector<ExtentAxis> allKinds() {
   std::vector<ExtentAxis> axes = cameraExtents();
@@ -34,11 +33,11 @@ Exact unitExact(const Vec3d& d) {
   return e / length(e);
 }
 
-// Returns a pseudo-angle computed with the inverse tangent.
+// Returns the pseudo-angle of a point; that of the eye itself is 0.
 long double exactPseudoAngle(const Exact& p, const Exact& zero, const Exact& quarter) {
-  const long double angle = std::atan2(dot(p, quarter), dot(p, zero));
-  const long double s = std::sin(angle), c = std::cos(angle), side = s / (std::abs(s) + std::abs(c));
-  return std::abs(angle) <= kHalfTurn / 2 ? side : angle > 0 ? 2 - side : -2 - side;
+  const long double s = dot(p, quarter), c = dot(p, zero), sum = std::abs(s) + std::abs(c);
+  const long double side = sum > 0 ? s / sum : 0;
+  return c >= 0 ? side : s > 0 ? 2 - side : -2 - side;
 }
 
 bool holdsAngle(const Interval& range, long double angle) {
@@ -104,24 +103,23 @@ void checkAngles(const Interval& own, const std::vector<Exact>& points, std::siz
 void checkAll(const ExtentScene& scene, const PartExtents& extents, const std::vector<ExtentAxis>& axes,
               const View& view, const Vec3d& reference, Random& random, const std::string& where) {
   for (std::uint32_t part = 0; part < scene.store.parts(); ++part) {
-    const std::size_t vertices = exactPoints(scene, part, {}).size();
+    const std::vector<Exact> from_reference = exactPoints(scene, part, reference);
+    const bool one_hull = scene.store.hullsOf(part).size() == 1;
+    const std::size_t vertices = from_reference.size();
+    // Vertices first, of a single hull then points between them.
+    const std::vector<Exact> from_eye = exactPoints(scene, part, view.eye, one_hull ? &random : nullptr);
     for (std::size_t a = 0; a < axes.size(); ++a) {
       const std::string here = where + ", part " + std::to_string(part) + ", axis " + std::to_string(a);
       const Interval own = extents.table().at(a, part);
       const Exact direction = unitExact(inWorld(axes[a].direction, axes[a].frame, view));
       if (axes[a].kind == Kind::kSpatial) {
-        const Vec3d from = axes[a].frame == Frame::kCamera ? view.eye : reference;
-        checkHeights(own, exactPoints(scene, part, from), direction, here);
+        checkHeights(own, axes[a].frame == Frame::kCamera ? from_eye : from_reference, direction, here);
       } else if (!view.orthographic) {
         const Exact zero = unitExact(inWorld(axes[a].zero, axes[a].frame, view));
-        const std::vector<Exact> vertex_points = exactPoints(scene, part, view.eye);
-        std::vector<Exact> points = vertex_points;
-        if (scene.store.hullsOf(part).size() == 1) {
-          const std::vector<Exact> inner = exactPoints(scene, part, view.eye, &random);
-          points.insert(points.end(), inner.begin() + static_cast<std::ptrdiff_t>(vertices), inner.end());
-          checkAngles(own, points, vertices, zero, direction, here);
+        if (one_hull) {
+          checkAngles(own, from_eye, vertices, zero, direction, here);
         } else {
-          for (const Exact& p : points) {
+          for (const Exact& p : from_eye) {
             EXPECT_TRUE(holdsAngle(own, exactPseudoAngle(p, zero, direction))) << here;
           }
         }
