@@ -32,9 +32,16 @@ std::vector<Vec3d> outermost(const std::vector<Vec3d>& points) {
     const double z = 1.0 - (2.0 * i + 1.0) / kCloudDirections, around = std::sqrt(1.0 - z * z);
     const double angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * i;
     const Vec3d direction(around * std::cos(angle), around * std::sin(angle), z);
-    found.push_back(*std::max_element(points.begin(), points.end(), [&](const Vec3d& a, const Vec3d& b) {
-      return dot(direction, a) < dot(direction, b);
-    }));
+    std::size_t farthest = 0;
+    double height = dot(direction, points[0]);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const double other = dot(direction, points[k]);
+      if (other > height) {
+        height = other;
+        farthest = k;
+      }
+    }
+    found.push_back(points[farthest]);
   }
   return found;
 }
