@@ -196,10 +196,11 @@ TEST_P(SharedScenes, DividedPartsAreInOrderAlongRays) {
   const std::string name = GetParam();
   const std::string file = (test::folderOfScenes() / name / (name + ".glb")).string();
   SIGHTLINE_SKIP_WITHOUT_SCENE(file);
-  const json result = splitFrames({file, "--frames", "40", "--split-cycles", "16"});
+  const json result = splitFrames({file, "--frames", "40", "--split-cycles", "4"});
   const json& frame = result["frames"][0];
   expectWholeOrPieces(frame, result["parts"].get<std::uint32_t>());
   const auto pieces = piecesOf(frame);
+  EXPECT_FALSE(pieces.empty());
   std::map<std::uint32_t, std::size_t> group_of;
   for (std::size_t i = 0; i < frame["order"].size(); ++i) {
     for (const std::uint32_t part : frame["order"][i]) {
@@ -237,9 +238,8 @@ TEST_P(SharedScenes, DividedPartsAreInOrderAlongRays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SharedScenes,
-                         ::testing::Values("stk_candela_city", "stk_gran_paradiso_island", "stk_black_forest",
-                                           "ingolstadt_lod3", "oa_ctf_compromise", "oa_czest2ctf",
-                                           "aws_hospital_3f", "ifc_duplex", "truman_carrier"));
+                         ::testing::Values("stk_candela_city", "stk_gran_paradiso_island", "ingolstadt_lod3",
+                                           "oa_ctf_compromise"));
 
 }  // namespace
 }  // namespace sightline::tool_test
