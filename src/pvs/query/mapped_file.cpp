@@ -51,7 +51,7 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
   return *this;
 }
 
-Result<MappedFile> MappedFile::open(const std::string& file) {
+Result<MappedFile> MappedFile::open(const std::string& file, Pages pages) {
   // Opens without blocking; otherwise a pipe without a writer would block forever.
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
@@ -67,8 +67,8 @@ Result<MappedFile> MappedFile::open(const std::string& file) {
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   // No memory is reserved for copies of pages, because the file may be larger than memory.
-  void* begin =
-      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_NORESERVE, descriptor.number(), 0);
+  const int access = pages == Pages::kReadOnly ? PROT_READ : PROT_READ | PROT_WRITE;
+  void* begin = ::mmap(nullptr, size, access, MAP_PRIVATE | MAP_NORESERVE, descriptor.number(), 0);
   if (begin == MAP_FAILED) {
     return unreadable();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -8,16 +9,21 @@
 
 namespace sightline::pvs {
 
-// A memory-mapped file; its pages are read on demand. Whoever writes to one has a copy of it.
+// A memory-mapped file; its pages are read on demand.
 class MappedFile {
  public:
+  // Whether someone may write to the pages. A page that is written to is copied first, so the file stays as
+  // it is. Some systems count all pages that may be copied as memory in use, and refuse a file larger than
+  // that.
+  enum class Pages : std::uint8_t { kReadOnly, kCopiedWhenWritten };
+
   MappedFile() = default;
   ~MappedFile();
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&& other) noexcept;
 
   // Errors do not contain the file's name.
-  static Result<MappedFile> open(const std::string& file);
+  static Result<MappedFile> open(const std::string& file, Pages pages);
 
   std::span<const std::byte> bytes() const { return {begin_, size_}; }
   // Gives the memory of these bytes of the file back; they are read from the disk again when they are asked

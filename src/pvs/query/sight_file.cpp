@@ -10,8 +10,6 @@ namespace sightline {
 namespace {
 
 using namespace pvs;
-using pvs::ChunkDecoder;
-using pvs::MappedFile;
 
 // Replaces control characters in a name, because an error is a single line.
 std::string oneLine(std::string text) {
@@ -82,7 +80,7 @@ Result<SightFile> SightFile::read(std::shared_ptr<Data> data) {
 Result<SightFile> SightFile::open(const std::string& file) {
   auto data = std::make_shared<Data>();
   data->name = oneLine(file);
-  Result<MappedFile> mapped = MappedFile::open(file);
+  Result<MappedFile> mapped = MappedFile::open(file, MappedFile::Pages::kReadOnly);
   if (!mapped) {
     return Error{data->name + " " + mapped.error().message};
   }

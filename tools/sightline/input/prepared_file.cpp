@@ -67,11 +67,13 @@ Status PreparedFile::map() {
   if (!std::filesystem::exists(name_, ignored)) {
     return Success{};
   }
-  Result<pvs::MappedFile> opened = pvs::MappedFile::open(name_);
+  // The vectors of what is read from a section lie in the map, and may be written to.
+  using pvs::MappedFile;
+  Result<MappedFile> opened = MappedFile::open(name_, MappedFile::Pages::kCopiedWhenWritten);
   if (!opened) {
     return Error{fmt::format("--prepared {}: {}", name_, opened.error().message)};
   }
-  const auto mapped = std::make_shared<pvs::MappedFile>(std::move(*opened));
+  const auto mapped = std::make_shared<MappedFile>(std::move(*opened));
   const std::span<const std::byte> bytes = mapped->bytes();
   if (!bytes.empty() &&
       (bytes.size() < kLettersOfAll || std::memcmp(bytes.data(), kLetters, kLettersOfAll) != 0)) {
