@@ -721,6 +721,7 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
     EXPECT_EQ(bake.error().message.find("bake: "), 0u);
   }
   EXPECT_FALSE(Bake::plan({}, {}, {})) << "nothing to see";
+  EXPECT_FALSE(Bake::plan({}, {}, {.viewers = {{{0, 0, 0}, {1, 1, 1}}}})) << "also where viewers are given";
 }
 
 TEST(Bake, RefusesOccludersOfNoObjectOfTheScene) {

@@ -207,6 +207,9 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   if (const std::string problem = problemWithDoors(scene, settings.doors); !problem.empty()) {
     return Error{"bake: " + problem};
   }
+  if (scene.objects.empty()) {
+    return Error{"bake: the scene has no object, so there is nothing to see"};
+  }
   BakeSettings complete = settings;
   if (complete.viewers.empty()) {
     complete.viewers = {boundsOf(scene)};
@@ -536,11 +539,8 @@ Result<BakedVisibility> Bake::assemble(const ReadPart& read) const {
   BakedVisibility baked = withoutCells(scene, data_->scene_id);
   if (scene.settings.byte_budget == 0) {
     flatten(*top, scene, baked);
-  } else if (const std::uint64_t bytes = fitBytes(scene, *top, scene.settings.byte_budget, baked);
-             bytes > scene.settings.byte_budget) {
-    return Error{"bake: the file has " + std::to_string(bytes) +
-                 " bytes even with the fewest cells, more than the byte budget of " +
-                 std::to_string(scene.settings.byte_budget) + "; give a larger one"};
+  } else if (const Status fits = fitBytes(scene, *top, scene.settings.byte_budget, baked); !fits) {
+    return Error{"bake: " + fits.error().message};
   }
   return baked;
 }

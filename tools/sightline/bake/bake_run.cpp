@@ -43,8 +43,15 @@ class BakeThreads {
  public:
   BakeThreads(const Bake& bake, PartQueue& queue, std::uint32_t count, bool divide)
       : queue_(queue), divide_(divide), stats_(count) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      threads_.emplace_back([this, &bake, i] { work(bake, i); });
+    try {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        threads_.emplace_back([this, &bake, i] { work(bake, i); });
+      }
+    } catch (...) {
+      // The system gives no more threads. Those that run must end before this object does.
+      queue_.clear();
+      join();
+      throw;
     }
   }
   // Waits until the parts that are being baked are finished.

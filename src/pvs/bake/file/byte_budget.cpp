@@ -6,8 +6,8 @@
 #include "src/pvs/bake/file/byte_budget.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -99,9 +99,8 @@ double cheapest(const Choice& choice, double price, std::uint32_t level, BakedCe
 
 }  // namespace
 
-std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes,
-                       BakedVisibility& baked) {
-  std::uint64_t now = 0;  // bytes of the file with the last cells
+Status fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes, BakedVisibility& baked) {
+  Status last = Success{};  // whether the file with the last cells fits
   const auto fits = [&](const BakedCell& cells) {
     const Vec3d min = baked.octree.min, max = baked.octree.max;
     baked.octree = {};
@@ -111,11 +110,19 @@ std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint6
     baked.doors = {};
     flatten(cells, scene, baked);
     const Result<SightBytes> file = encodeSight(baked);
-    now = file ? file->size() : std::numeric_limits<std::uint64_t>::max();
-    return now <= bytes;
+    if (!file) {
+      last = file.error();
+    } else if (file->size() > bytes) {
+      last = Error{"the file has " + std::to_string(file->size()) +
+                   " bytes even with the fewest cells, more than the byte budget of " +
+                   std::to_string(bytes) + "; give a larger one"};
+    } else {
+      last = Success{};
+    }
+    return last.has_value();
   };
   if (fits(root)) {
-    return now;
+    return last;
   }
   const Choice choices = choiceOf(scene, root);
   const auto fitsAt = [&](double price) {
@@ -127,14 +134,14 @@ std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint6
   constexpr int kSteps = 12;
   double low = -60.0, high = std::log2(static_cast<double>(scene.boxes.nodes[0].triangles) + 1.0);
   if (!fitsAt(std::exp2(high))) {
-    return now;
+    return last;
   }
   for (int step = 0; step < kSteps; ++step) {
     const double middle = 0.5 * (low + high);
     (fitsAt(std::exp2(middle)) ? high : low) = middle;
   }
   fitsAt(std::exp2(high));
-  return now;
+  return last;
 }
 
 }  // namespace sightline::pvs
