@@ -52,6 +52,54 @@ inline BakedVisibility baked(const Scene& scene, const BakeSettings& settings) {
   return result ? std::move(*result) : BakedVisibility{};
 }
 
+// A scene that is baked once, for files of any size. The scene must outlive it.
+class BakedOnce {
+ public:
+  BakedOnce(const Scene& scene, const BakeSettings& settings)
+      : scene_(scene), settings_(settings), occluders_(allOccluders(scene)) {
+    const Result<Bake> bake = Bake::plan(scene_.view(), occluders_, settings_);
+    EXPECT_TRUE(bake) << (bake ? "" : bake.error().message);
+    parts_ = bake ? bake->bakeAll() : BakedParts{};
+  }
+
+  // The result, of at most so many bytes; 0: of any number.
+  Result<BakedVisibility> fitted(std::uint64_t bytes) const {
+    BakeSettings settings = settings_;
+    settings.byte_budget = bytes;
+    return Bake::plan(scene_.view(), occluders_, settings)->assemble(parts_);
+  }
+
+ private:
+  const Scene& scene_;
+  BakeSettings settings_;
+  OccluderSet occluders_;
+  BakedParts parts_;
+};
+
+// All parts, depth first: the last known part is baked first.
+template <typename BakePart>
+BakedParts partsOf(const Bake& bake, BakePart&& bake_part) {
+  BakedParts parts;
+  for (std::vector<PartTask> open{bake.firstPart()}; !open.empty();) {
+    const PartTask part = open.back();
+    open.pop_back();
+    const BakedPart& bytes = parts.emplace(part.id, bake_part(part)).first->second;
+    const std::vector<PartTask> below = bake.partsBelow(bytes);
+    open.insert(open.end(), below.begin(), below.end());
+  }
+  return parts;
+}
+
+// A random point of a box.
+inline Vec3d pointIn(const Vec3d& min, const Vec3d& max, std::mt19937& random) {
+  Vec3d point;
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis] =
+        min[axis] + (max[axis] - min[axis]) * std::uniform_real_distribution<double>(0.0, 1.0)(random);
+  }
+  return point;
+}
+
 // Indexed by ObjectId.
 inline std::vector<bool> membersOf(const BakedVisibility& baked, std::uint32_t set) {
   std::vector<bool> members(baked.boxes.objects.size(), false);

@@ -17,6 +17,7 @@ using test::baked;
 using test::BakeJudge;
 using test::block;
 using test::membersOf;
+using test::partsOf;
 using test::sceneOf;
 using test::Solid;
 
@@ -128,13 +129,19 @@ TEST(Bake, LeavesOutNothingThatIsSeenOnAShip) {
   EXPECT_GT(judge.hidden, judge.seen);
 }
 
-TEST(Bake, LeavesOutNothingThatIsSeenInAStreet) {
-  for (const float plate : {20.0f, 2000.0f}) {
+// The depth is chosen, and suits the occluders however wide the ground is.
+TEST(Bake, LeavesOutNothingThatIsSeenInAStreetAndMuchThatIsNotWithFewCells) {
+  for (const float plate : {20.0f, 2000.0f, 20000.0f}) {
     const Scene scene = streetScene(plate);
     const BakedVisibility result = baked(scene, {.triangle_budget = 100});
-    BakeJudge judge(scene, result);
-    judge.judge(1, static_cast<std::uint32_t>(result.octree.leaves.size() / 200 + 1), 0.1, 9);
-    EXPECT_GT(judge.hidden, judge.seen) << plate;
+    EXPECT_LT(keptInTheStreet(result), 0.7) << plate;
+    EXPECT_LT(result.octree.leaves.size(), 65536u) << plate;
+    EXPECT_LE(result.record.max_depth, kMaxOctreeDepth);
+    if (plate <= 2000.0f) {
+      BakeJudge judge(scene, result);
+      judge.judge(1, static_cast<std::uint32_t>(result.octree.leaves.size() / 200 + 1), 0.1, 9);
+      EXPECT_GT(judge.hidden, judge.seen) << plate;
+    }
   }
 }
 
@@ -151,15 +158,6 @@ TEST(Bake, DividesCellsThatAreTooLargeForTheOccludersInThem) {
   const BakedVisibility result = baked(sceneOf(solids), {.max_depth = 9});
   EXPECT_LT(keptAt(result, {300.3, 1.7, 171.2}), 0.5);
   EXPECT_GT(keptAt(result, {-500.3, 1.7, 171.2}), 0.9);
-}
-
-TEST(Bake, ChoosesADepthThatSuitsTheOccludersHoweverWideTheGroundAndWithFewCells) {
-  for (const float plate : {20.0f, 2000.0f, 20000.0f}) {
-    const BakedVisibility result = baked(streetScene(plate), {.triangle_budget = 100});
-    EXPECT_LT(keptInTheStreet(result), 0.7) << plate;
-    EXPECT_LT(result.octree.leaves.size(), 65536u) << plate;
-    EXPECT_LE(result.record.max_depth, kMaxOctreeDepth);
-  }
 }
 
 TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
@@ -360,9 +358,9 @@ TEST(Bake, CountsTheCellsWithViewersUnlessTheyAreTooMany) {
   constexpr std::uint32_t kDepth = 4;
   const Result<Bake> bake = Bake::plan(scene.view(), occluders, {.max_depth = kDepth, .viewers = viewers});
   ASSERT_TRUE(bake);
-  const Result<BakedVisibility> baked = bake->assemble(bake->bakeAll());
-  ASSERT_TRUE(baked);
-  const Vec3d low = baked->octree.min, high = baked->octree.max;
+  // The root depends on the viewers alone.
+  const BakedVisibility root = baked(scene, {.max_depth = 0, .viewers = viewers});
+  const Vec3d low = root.octree.min, high = root.octree.max;
   std::uint64_t count = 0;
   OctreeCell cell{kDepth, {}};
   for (std::uint32_t i = 0; i < 1u << (3 * kDepth); ++i) {
@@ -410,20 +408,6 @@ TEST(Bake, IsAnotherPlanForOtherViewers) {
   EXPECT_EQ(hashOf({all, part}), hashOf({all, part}));
 }
 
-// Depth first: the last known part is baked first.
-template <typename BakePart>
-BakedParts partsOf(const Bake& bake, BakePart&& bake_part) {
-  BakedParts parts;
-  for (std::vector<PartTask> open{bake.firstPart()}; !open.empty();) {
-    const PartTask part = open.back();
-    open.pop_back();
-    const BakedPart& bytes = parts.emplace(part.id, bake_part(part)).first->second;
-    const std::vector<PartTask> below = bake.partsBelow(bytes);
-    open.insert(open.end(), below.begin(), below.end());
-  }
-  return parts;
-}
-
 TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
   for (const std::uint32_t depth : {4u, 5u}) {
@@ -442,28 +426,6 @@ TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
     EXPECT_NEAR(share, 1.0, 1e-9) << "parts fill the viewers' region";
     EXPECT_GT(leaves, 64u);
   }
-}
-
-// A cell takes far longer with surfaces than with convex occluders alone.
-TEST(Bake, PartsOfMoreWorkAreFewerCells) {
-  const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
-  const auto partsWith = [&](BakeOcclusion occlusion, std::uint32_t& most_leaves) {
-    const Result<Bake> bake =
-        Bake::plan(scene.view(), allOccluders(scene),
-                   {.occlusion = occlusion, .max_depth = 3, .near_distance = 0.1, .merge_tolerance = 0.0});
-    EXPECT_TRUE(bake);
-    const BakedParts parts = bake->bakeAll();
-    for (const auto& [id, part] : parts) {
-      most_leaves = std::max(most_leaves, bake->summaryOf(part).leaves);
-    }
-    EXPECT_TRUE(bake->assemble(parts));
-    return parts.size();
-  };
-  std::uint32_t most_convex = 0, most_fused = 0;
-  const std::size_t convex = partsWith(BakeOcclusion::kConvex, most_convex);
-  const std::size_t fused = partsWith(BakeOcclusion::kFused, most_fused);
-  EXPECT_GT(fused, 2 * convex);
-  EXPECT_LT(2 * most_fused, most_convex);
 }
 
 // Bakes each part by a worker of its own, the last ones of each level first.
@@ -520,16 +482,17 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsWithoutSamples) {
   EXPECT_TRUE(same(*a, baked(scene, {.max_depth = 4})));
 }
 
+// Without samples, lists are handed to cells only where there are no witnesses. The test before this one does
+// the same with a ship.
 TEST(Bake, HasTheSameSetsWithSamplesAndWithout) {
-  const std::vector<Scene> scenes{makeShip({.decks = 3, .rooms = 4, .machinery = 8}), makeCity({.copies = 2}),
-                                  makeBuilding({.floors = 2})};
-  for (const Scene& scene : scenes) {
+  for (const Scene& scene : {makeCity({.copies = 2}), makeBuilding({.floors = 2})}) {
+    BakeSettings settings{.triangle_budget = 100, .max_depth = 5, .witnesses = true};
+    const BakedVisibility with = baked(scene, settings);
+    settings.sample_bytes = 0;
     for (const bool witnesses : {false, true}) {
-      BakeSettings settings{.triangle_budget = 100, .max_depth = 5, .witnesses = witnesses};
-      const BakedVisibility with = baked(scene, settings);
-      settings.sample_bytes = 0;
+      settings.witnesses = witnesses;
       const BakedVisibility without = baked(scene, settings);
-      EXPECT_TRUE(same(with, without));
+      EXPECT_TRUE(same(with, without)) << witnesses;
       EXPECT_GT(without.sets.count(), 20u);
     }
   }
@@ -556,16 +519,33 @@ TEST(Bake, KeepsNoSamplesAndLooksAtAnyDistanceWhereObjectsAreMany) {
   }
 }
 
-TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
+// A cell takes far longer with surfaces than with convex occluders alone, so the parts are fewer cells.
+TEST(Bake, FusedSetsAreSmallerInSmallerPartsAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
-  BakeSettings settings{.max_depth = 3, .near_distance = 0.1};
-  const BakedVisibility convex = baked(scene, settings);
-  settings.occlusion = BakeOcclusion::kFused;
-  const BakedVisibility fused = baked(scene, settings);
-  BakeJudge judge_convex(scene, convex), judge(scene, fused);
-  judge_convex.judge(1, 3, 0.1, 21);
-  judge.judge(1, 3, 0.1, 21);
-  EXPECT_GT(judge.hidden, judge_convex.hidden + judge_convex.hidden / 10);
+  const OccluderSet occluders = allOccluders(scene);
+  struct Outcome {
+    std::size_t parts = 0, hidden = 0;
+    std::uint32_t most_leaves = 0;  // of a part
+  };
+  const auto outcomeOf = [&](BakeOcclusion occlusion) {
+    const Result<Bake> bake =
+        Bake::plan(scene.view(), occluders,
+                   {.occlusion = occlusion, .max_depth = 3, .near_distance = 0.1, .merge_tolerance = 0.0});
+    const BakedParts parts = bake->bakeAll();
+    Outcome outcome{.parts = parts.size()};
+    for (const auto& [id, part] : parts) {
+      outcome.most_leaves = std::max(outcome.most_leaves, bake->summaryOf(part).leaves);
+    }
+    const Result<BakedVisibility> result = bake->assemble(parts);
+    BakeJudge judge(scene, *result);
+    judge.judge(1, 3, 0.1, 21);
+    outcome.hidden = judge.hidden;
+    return outcome;
+  };
+  const Outcome convex = outcomeOf(BakeOcclusion::kConvex), fused = outcomeOf(BakeOcclusion::kFused);
+  EXPECT_GT(fused.parts, 2 * convex.parts);
+  EXPECT_LT(2 * fused.most_leaves, convex.most_leaves);
+  EXPECT_GT(fused.hidden, convex.hidden + convex.hidden / 10);
 }
 
 // An L, lying on its longer side.
@@ -671,17 +651,18 @@ TEST(Bake, RefusesPartsOfAnotherPlanAndBrokenOnes) {
   ASSERT_TRUE(bake && other);
   EXPECT_NE(bake->hash(), other->hash());
   const BakedParts parts = bake->bakeAll();
+  const BakedPart of_other = Bake::Worker(*other).bake(other->firstPart());
   ASSERT_GT(parts.size(), 2u);
   ASSERT_TRUE(bake->assemble(parts));
   const std::uint64_t last = parts.rbegin()->first;
-  EXPECT_FALSE(bake->isPart(last, other->bakeAll().begin()->second));
+  EXPECT_FALSE(bake->isPart(1, of_other));
   for (const auto& [id, part] : parts) {
     BakedParts missing = parts;
     missing.erase(id);
     EXPECT_FALSE(bake->assemble(missing)) << id;
   }
   BakedParts foreign = parts;
-  foreign[1] = other->bakeAll().at(1);
+  foreign[1] = of_other;
   EXPECT_FALSE(bake->assemble(foreign));
   BakedParts swapped = parts;
   std::swap(swapped[last], swapped[last - 1]);

@@ -15,6 +15,7 @@ namespace {
 
 using sight_test::Bytes;
 using sight_test::bytesOf;
+using sight_test::seenBy;
 
 Scene smallShip() {
   return makeShip({.decks = 3, .rooms = 4, .machinery = 0});
@@ -60,21 +61,12 @@ double meanTriangles(const BakedVisibility& baked) {
   return sum / all;
 }
 
-std::vector<bool> seenAt(SetQuery& query, const Vec3d& eye) {
-  std::vector<bool> seen(query.boxes().objects.size(), false);
-  for (const std::uint32_t node : query.find(eye, 0.05).nodes) {
-    for (const ObjectId object : query.boxes().objectsBelow(node)) {
-      seen[object.value] = true;
-    }
-  }
-  return seen;
-}
-
 TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
   const Scene scene = smallShip();
   for (const bool partly : {false, true}) {
-    BakeSettings settings = settingsFor(partly);
-    const BakedVisibility whole = test::baked(scene, settings);
+    const BakeSettings settings = settingsFor(partly);
+    const test::BakedOnce bake(scene, settings);
+    const BakedVisibility whole = *bake.fitted(0);
     const Bytes whole_bytes = bytesOf(whole);
     // The file with one cell.
     BakeSettings of_one = settings;
@@ -85,8 +77,9 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
     for (const double share : {0.7, 0.4, 0.15}) {
       const auto budget =
           static_cast<std::uint64_t>(fewest + share * (static_cast<double>(whole_bytes.size()) - fewest));
-      settings.byte_budget = budget;
-      const BakedVisibility fitted = test::baked(scene, settings);
+      const Result<BakedVisibility> result = bake.fitted(budget);
+      ASSERT_TRUE(result) << result.error().message;
+      const BakedVisibility& fitted = *result;
       const Bytes bytes = bytesOf(fitted);
       EXPECT_LE(bytes.size(), budget) << share;
       EXPECT_LT(fitted.octree.leaves.size(), leaves_before) << share;
@@ -101,13 +94,9 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
       std::mt19937 random(7);
       std::size_t missing = 0;
       for (int i = 0; i < 500; ++i) {
-        Vec3d eye = whole.octree.min;
-        for (int axis = 0; axis < 3; ++axis) {
-          eye[axis] += (whole.octree.max[axis] - whole.octree.min[axis]) *
-                       std::uniform_real_distribution<double>(0.0, 1.0)(random);
-        }
+        const Vec3d eye = test::pointIn(whole.octree.min, whole.octree.max, random);
         // What is hidden where the whole file has no set would be a claim that nobody has proved.
-        const std::vector<bool> seen = seenAt(query, eye), must = seenAt(of_whole, eye);
+        const std::vector<bool> seen = seenBy(query, eye, 0.05), must = seenBy(of_whole, eye, 0.05);
         for (std::size_t object = 0; object < seen.size(); ++object) {
           missing += must[object] && !seen[object] ? 1 : 0;
         }
@@ -119,12 +108,10 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
 
 TEST(ByteBudget, ChangesNothingThatFits) {
   const Scene scene = smallShip();
-  BakeSettings settings = settingsFor(false);
-  const Bytes whole = bytesOf(test::baked(scene, settings));
-  settings.byte_budget = whole.size();
-  EXPECT_TRUE(bytesOf(test::baked(scene, settings)) == whole);
-  settings.byte_budget = whole.size() - 1;
-  EXPECT_LT(bytesOf(test::baked(scene, settings)).size(), whole.size());
+  const test::BakedOnce bake(scene, settingsFor(false));
+  const Bytes whole = bytesOf(*bake.fitted(0));
+  EXPECT_TRUE(bytesOf(*bake.fitted(whole.size())) == whole);
+  EXPECT_LT(bytesOf(*bake.fitted(whole.size() - 1)).size(), whole.size());
 }
 
 TEST(ByteBudget, ThatNoCellsAreFewEnoughForIsAnError) {

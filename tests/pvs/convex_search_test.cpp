@@ -16,6 +16,7 @@ using test::allOccluders;
 using test::block;
 using test::Random;
 using test::sceneOf;
+using test::Solid;
 
 // Walls, posts and crates around the middle, thick and thin.
 Scene randomTown(Random& random, std::uint32_t count) {
@@ -68,12 +69,19 @@ struct Town {
   OccluderSet occluders;
   BakeScene bake;
 
-  explicit Town(std::uint64_t seed)
+  explicit Town(std::uint64_t seed, bool with_bodies = true)
       : scene(made(seed)),
-        occluders(allOccluders(scene)),
+        occluders(found(scene, with_bodies)),
         bake(scene.view(), occluders,
              {.max_depth = 4, .near_distance = 0.01, .viewers = {{{-40, -40, -40}, {40, 40, 40}}}},
              serialFor) {}
+  static OccluderSet found(const Scene& scene, bool with_bodies) {
+    OccluderSet occluders = allOccluders(scene);
+    if (!with_bodies) {
+      occluders.bodies.clear();
+    }
+    return occluders;
+  }
   static Scene made(std::uint64_t seed) {
     Random random(seed);
     Scene scene = randomTown(random, 20 + 40 * static_cast<std::uint32_t>(seed % 10));
@@ -164,13 +172,8 @@ ObjectMask maskOf(const std::vector<bool>& objects) {
 TEST(ConvexSearch, FindsTheSameByListsOfCellsAround) {
   std::size_t hidden_count = 0, seen_count = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    Town town(seed);
-    if (seed % 2 == 1) {
-      town.occluders.bodies.clear();
-    }
-    const BakeScene bake(
-        town.scene.view(), town.occluders,
-        {.max_depth = 4, .near_distance = 0.01, .viewers = {{{-40, -40, -40}, {40, 40, 40}}}}, serialFor);
+    const Town town(seed, seed % 2 == 0);
+    const BakeScene& bake = town.bake;
     ConvexSearch search(bake);
     CellCandidates outer(bake), lists(bake);
     Random random(seed + 2000);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -94,6 +95,19 @@ inline std::vector<std::vector<ObjectId>> combinationsOf(const std::vector<Objec
         all.back().push_back(doors[i]);
       }
     }
+  }
+  return all;
+}
+
+// The sets of closed doors that a baked file says something of by itself: none, and each group, all doors
+// last. For any other one it says what the groups within it hide. Whatever a ray reaches although one of them
+// hides it, the same ray reaches while only that group is closed.
+inline std::vector<std::vector<ObjectId>> closedSetsOf(const BakedVisibility& baked) {
+  std::vector<std::vector<ObjectId>> all(1);
+  const DoorsView doors = baked.doors.view();
+  for (std::uint32_t group = 0; group < doors.groupCount(); ++group) {
+    const std::span<const ObjectId> closed = doors.doorsOf(group);
+    all.emplace_back(closed.begin(), closed.end());
   }
   return all;
 }

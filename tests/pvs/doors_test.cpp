@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <set>
 
-#include "sightline/pvs/query/set_query.h"
 #include "src/pvs/bake/cell_tree.h"
 #include "tests/pvs/door_scenes.h"
 #include "tests/pvs/edited_scene.h"
@@ -16,6 +14,7 @@ namespace {
 
 using test::alone;
 using test::BakeJudge;
+using test::closedSetsOf;
 using test::combinationsOf;
 using test::DoorScene;
 using test::leftWith;
@@ -33,11 +32,12 @@ BakeSettings settingsFor(BakeOcclusion occlusion, std::vector<std::vector<Object
           .merge_tolerance = 0.2};
 }
 
-// Judges each set of closed doors by rays. Returns how many objects were hidden in all views, by set.
+// Judges by rays what is hidden while all doors are open, and while each group is closed. Returns how many
+// objects were hidden in all views: the first number is that of open doors, the last that of closed ones.
 std::vector<std::size_t> judgeAll(const DoorScene& rooms, const BakedVisibility& baked, std::uint32_t step,
                                   std::uint32_t seed) {
   std::vector<std::size_t> hidden;
-  for (const std::vector<ObjectId>& closed : combinationsOf(rooms.doors)) {
+  for (const std::vector<ObjectId>& closed : closedSetsOf(baked)) {
     SCOPED_TRACE(std::to_string(closed.size()) + " doors are closed");
     const Scene scene = withDoors(rooms, closed);
     const BakedVisibility left = leftWith(baked, closed);
@@ -48,25 +48,13 @@ std::vector<std::size_t> judgeAll(const DoorScene& rooms, const BakedVisibility&
   return hidden;
 }
 
-// The set for viewers at a place while these doors are closed, as flags by object.
-std::vector<bool> seenAt(const BakedVisibility& baked, const Vec3d& eye,
-                         const std::vector<ObjectId>& closed) {
-  const sight_test::Bytes bytes = sight_test::bytesOf(baked);
-  const Result<SightFile> file = sight_test::opened(bytes);
-  SetQuery query(*file);
-  query.setClosedDoors(closed);
-  std::vector<bool> seen(baked.boxes.objects.size(), false);
-  for (const std::uint32_t node : query.find(eye, kNear).nodes) {
-    for (const ObjectId object : file->boxes().objectsBelow(node)) {
-      seen[object.value] = true;
-    }
-  }
-  return seen;
-}
-
+// Whether the set for viewers at a place holds the object while these doors are closed.
 bool seesAt(const BakedVisibility& baked, const Vec3d& eye, ObjectId object,
             const std::vector<ObjectId>& closed) {
-  return seenAt(baked, eye, closed)[object.value];
+  const sight_test::Bytes bytes = sight_test::bytesOf(baked);
+  SetQuery query(*sight_test::opened(bytes));
+  query.setClosedDoors(closed);
+  return sight_test::seenBy(query, eye, kNear)[object.value];
 }
 
 constexpr Vec3d kInFirstRoom{1.3, 1.6, 2.4};
@@ -246,18 +234,9 @@ TEST(Doors, AreTheSameWhoeverBakesTheParts) {
   const BakeSettings settings = settingsFor(BakeOcclusion::kFused, alone(rooms.doors));
   const Result<Bake> bake = Bake::plan(rooms.scene.view(), test::allOccluders(rooms.scene), settings);
   ASSERT_TRUE(bake);
-  BakedParts parts;
-  for (std::vector<PartTask> open{bake->firstPart()}; !open.empty();) {
-    const PartTask task = open.back();
-    open.pop_back();
-    const BakedPart part = Bake::Worker(*bake).bake(task);
-    const std::vector<PartTask> below = bake->partsBelow(part);
-    open.insert(open.end(), below.begin(), below.end());
-    parts.emplace(task.id, part);
-  }
+  const BakedParts parts =
+      test::partsOf(*bake, [&](const PartTask& part) { return Bake::Worker(*bake).bake(part); });
   EXPECT_EQ(parts, bake->bakeAll());
-  EXPECT_EQ(sight_test::bytesOf(*bake->assemble(parts)),
-            sight_test::bytesOf(*bake->assemble(bake->bakeAll())));
 }
 
 TEST(Doors, AreRefusedThatAreNotThereOrHideNothing) {
@@ -275,25 +254,6 @@ TEST(Doors, AreRefusedThatAreNotThereOrHideNothing) {
   EXPECT_NE(problem({{rooms.doors[0]}}).find("never"), std::string::npos);
 }
 
-struct Updated {
-  sight_test::Bytes file, answers;
-};
-
-// answers: of an earlier bake that are taken over, or none.
-Updated bakeWith(const Scene& scene, BakeSettings settings, const sight_test::Bytes& answers) {
-  settings.answers = true;
-  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
-  Updated updated;
-  if (!bake || (!answers.empty() && !bake->takeOver(answers))) {
-    ADD_FAILURE();
-    return updated;
-  }
-  const BakedParts parts = bake->bakeAll();
-  updated.file = sight_test::bytesOf(*bake->assemble(parts));
-  updated.answers = bake->answers(parts);
-  return updated;
-}
-
 // What is a door may change from bake to bake, although the scene stays the same: its occluders come or go.
 TEST(Doors, AreAskedAnewByAnUpdateWhateverWasADoorBefore) {
   const DoorScene rooms = test::randomRooms(3);
@@ -304,10 +264,11 @@ TEST(Doors, AreAskedAnewByAnUpdateWhateverWasADoorBefore) {
     for (const std::vector<std::vector<ObjectId>>& doors :
          {alone(rooms.doors), std::vector<std::vector<ObjectId>>{}, alone({rooms.doors[0]}),
           alone({rooms.doors[1]}), alone(rooms.doors)}) {
-      const BakeSettings settings = settingsFor(occlusion, doors);
       const Scene scene = edited.scene();
-      const Updated updated = bakeWith(scene, settings, answers);
-      EXPECT_EQ(updated.file, bakeWith(scene, settings, {}).file);
+      test::AnsweredBake bake(scene, settingsFor(occlusion, doors));
+      const test::Answered full = bake.inFull();
+      const test::Answered updated = answers.empty() ? full : bake.after(answers);
+      EXPECT_EQ(updated.file, full.file);
       answers = updated.answers;
       edited.pieces.back().move({0, 0.25f, 0});  // a crate
     }
@@ -530,16 +491,15 @@ TEST(Doors, HideNothingThatIsSeenFromPartsOfCells) {
       settings.triangle_budget = 60;
       settings.max_depth = occlusion == BakeOcclusion::kFused ? 2 : 4;
       settings.merge_tolerance = seed % 2 == 0 ? 0.6 : 0.05;
-      const std::uint64_t bytes = sight_test::bytesOf(test::baked(rooms.scene, settings)).size();
-      for (const double part : {1.0, 0.8}) {
-        settings.byte_budget = part < 1.0 ? static_cast<std::uint64_t>(part * static_cast<double>(bytes)) : 0;
-        const Result<BakedVisibility> made =
-            bakeVisibility(rooms.scene.view(), test::allOccluders(rooms.scene), settings);
+      const test::BakedOnce bake(rooms.scene, settings);
+      const std::uint64_t bytes = sight_test::bytesOf(*bake.fitted(0)).size();
+      for (const std::uint64_t budget : {std::uint64_t{0}, bytes * 4 / 5}) {
+        const Result<BakedVisibility> made = bake.fitted(budget);
         if (!made) {
           continue;  // the fewest cells take more bytes
         }
         partial += made->octree.viewers.size();
-        for (const std::vector<ObjectId>& closed : combinationsOf(rooms.doors)) {
+        for (const std::vector<ObjectId>& closed : closedSetsOf(*made)) {
           const Scene scene = withDoors(rooms, closed);
           const BakedVisibility left = leftWith(*made, closed);
           BakeJudge judge(scene, left);
@@ -551,111 +511,6 @@ TEST(Doors, HideNothingThatIsSeenFromPartsOfCells) {
   }
   EXPECT_GT(hidden, 1000u);
   EXPECT_GT(partial, 100u);
-}
-
-// Sets of closed doors may take the place of the last set in the cache, and the viewer's own may be damaged.
-TEST(SetQuery, HandsOutNoSetThatLeftItsCacheForThoseOfDoors) {
-  made::Visibility settings;
-  settings.objects = 3000;
-  settings.leaves = 600;
-  settings.sets = 400;
-  settings.set_nodes = 300;
-  settings.plane_every = 0;
-  BakedVisibility baked = made::visibility(settings);
-  const ObjectId door(0u);
-  baked.doors.doors = {door};
-  baked.doors.group_ends = {1};
-  const std::uint32_t sets = baked.sets.count();
-  std::vector<std::vector<bool>> members;
-  for (std::uint32_t set = 0; set < sets; ++set) {
-    members.push_back(test::membersOf(baked, set));
-    baked.doors.hidden.push_back({0, (set + sets / 2) % sets});
-    baked.doors.hidden_ends.push_back(set + 1);
-  }
-  sight_test::Bytes bytes = sight_test::bytesOf(baked);
-  for (const std::size_t from_end : {700u, 20'000u, 29'000u, 38'000u}) {
-    bytes[bytes.size() - from_end] ^= std::byte{0x55};
-  }
-  const Result<SightFile> file = sight_test::opened(bytes);
-  ASSERT_TRUE(file) << sight_test::errorOf(file);
-  SetQuery query(*file, {.cache_bytes = 0});
-  std::mt19937 random(1);
-  const auto eye = [&] {
-    Vec3d at = baked.octree.min;
-    for (int axis = 0; axis < 3; ++axis) {
-      at[axis] +=
-          (baked.octree.max[axis] - baked.octree.min[axis]) * static_cast<double>(random() % 1000) / 999.0;
-    }
-    return at;
-  };
-  std::size_t looked_at = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3d here = eye();
-    query.setClosedDoors({});
-    query.find(here, 0.0);
-    query.setClosedDoors({&door, 1});
-    query.find(eye(), 0.0);
-    query.setClosedDoors({});
-    const VisibleSet found = query.find(here, 0.0);
-    if (found.id == VisibleSet::kEverything) {
-      continue;
-    }
-    std::vector<bool> have(members[found.id].size());
-    for (const std::uint32_t node : found.nodes) {
-      for (const ObjectId object : query.boxes().objectsBelow(node)) {
-        have[object.value] = true;
-      }
-    }
-    ASSERT_EQ(have, members[found.id]) << i;
-    ++looked_at;
-  }
-  EXPECT_GT(looked_at, 100u);
-  EXPECT_GT(query.stats().broken, 0u) << "no set was damaged";
-}
-
-TEST(SetQuery, HandsOutWhatClosedDoorsLeave) {
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-    const DoorScene rooms = test::randomRooms(seed);
-    const BakedVisibility baked =
-        test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
-    const sight_test::Bytes bytes = sight_test::bytesOf(baked);
-    const Result<SightFile> file = sight_test::opened(bytes);
-    ASSERT_TRUE(file) << sight_test::errorOf(file);
-    ASSERT_TRUE(file->verifyAll());
-    const std::vector<std::vector<ObjectId>> all = combinationsOf(rooms.doors);
-    std::mt19937 random(seed);
-    // A small cache drops sets while they are put together.
-    SetQuery query(*file, {.cache_bytes = seed == 1 ? std::size_t{0} : std::size_t{1} << 20});
-    std::map<std::uint32_t, std::vector<bool>> by_id;
-    for (int i = 0; i < 4000; ++i) {
-      std::vector<ObjectId> closed = all[random() % all.size()];
-      const auto at = [&](int axis) {
-        const double t = std::uniform_real_distribution<double>(0.0, 1.0)(random);
-        return baked.octree.min[axis] + t * (baked.octree.max[axis] - baked.octree.min[axis]);
-      };
-      const Vec3d eye{at(0), at(1), at(2)};
-      const std::vector<bool> expected =
-          membersWith(baked, test::setAt(baked.octree.view(), query.locate(eye).leaf, eye), closed);
-      std::shuffle(closed.begin(), closed.end(), random);
-      closed.push_back(ObjectId(0u));  // no door
-      query.setClosedDoors(closed);
-      for (int again = 0; again < 2; ++again) {
-        const VisibleSet found = query.find(eye, kNear);
-        std::vector<bool> members(expected.size(), false);
-        std::uint32_t after = 0;
-        for (const std::uint32_t node : found.nodes) {
-          EXPECT_GE(node, after);
-          after = file->boxes().nodes[node].end;
-          for (const ObjectId object : file->boxes().objectsBelow(node)) {
-            members[object.value] = true;
-          }
-        }
-        ASSERT_EQ(members, expected) << "seed " << seed << ", look-up " << i;
-        const auto [place, is_new] = by_id.try_emplace(found.id, members);
-        ASSERT_EQ(place->second, members) << "equal numbers, other sets";
-      }
-    }
-  }
 }
 
 }  // namespace

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/pvs/bake_scenes.h"
+#include "tests/pvs/sight_checks.h"
 
 namespace sightline::test {
 
@@ -77,6 +79,50 @@ struct EditedScene {
     }
     return box;
   }
+};
+
+// The file of a bake, and what it leaves for the next one.
+struct Answered {
+  sight_test::Bytes file{}, answers{};
+  std::vector<std::uint64_t> parts{};  // their ids
+  BakeStats stats{};
+  Bake::TakenOver taken{};
+};
+
+// A plan of a bake that records answers, baked in full and then after an earlier bake.
+class AnsweredBake {
+ public:
+  AnsweredBake(const Scene& scene, BakeSettings settings) {
+    settings.answers = true;
+    Result<Bake> bake = Bake::plan(scene.view(), allOccluders(scene), settings);
+    EXPECT_TRUE(bake) << (bake ? "" : bake.error().message);
+    bake_.emplace(*bake);
+  }
+
+  // To be called before after(): what was taken over once stays.
+  Answered inFull() const {
+    Answered made;
+    const BakedParts parts = bake_->bakeAll(serialFor, {}, &made.stats);
+    for (const auto& [id, part] : parts) {
+      made.parts.push_back(id);
+    }
+    const Result<BakedVisibility> baked = bake_->assemble(parts);
+    EXPECT_TRUE(baked) << (baked ? "" : baked.error().message);
+    made.file = baked ? sight_test::bytesOf(*baked) : sight_test::Bytes{};
+    made.answers = bake_->answers(parts);
+    return made;
+  }
+  // Takes over the answers of an earlier bake.
+  Answered after(const sight_test::Bytes& answers) {
+    const Result<Bake::TakenOver> taken = bake_->takeOver(answers);
+    EXPECT_TRUE(taken) << (taken ? "" : taken.error().message);
+    Answered made = inFull();
+    made.taken = taken ? *taken : Bake::TakenOver{};
+    return made;
+  }
+
+ private:
+  std::optional<Bake> bake_;
 };
 
 // Edits a scene at random, but never what is as wide as half of it: floors and outer walls stay. The octree's

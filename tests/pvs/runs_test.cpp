@@ -62,6 +62,8 @@ TEST(Runs, AreSets) {
       EXPECT_EQ(mask.contains(i), !left[i]);
     }
     EXPECT_EQ(out, runsOf(left));
+    subtract(runsOf(a), runsOf(b), out);
+    EXPECT_EQ(out, runsOf(left));
   }
 }
 

@@ -49,19 +49,12 @@ TEST(SetQueryAllocations, DoNotHappenOnceAllSetsAreDecoded) {
   EXPECT_EQ(query.stats().decoded, decoded);
 }
 
-// Each set loses another one while a door is closed; both are nodes of one tree.
 TEST(SetQueryAllocations, DoNotHappenForDoorsThatWereClosedBefore) {
   BakedVisibility baked = made::visibility({.objects = 2000, .leaves = 300, .sets = 100, .set_nodes = 50});
   const std::vector<std::vector<ObjectId>> states{
       {}, {ObjectId(3u)}, {ObjectId(3u), ObjectId(5u)}, {ObjectId(5u)}};
-  baked.doors.doors = {ObjectId(3u), ObjectId(5u), ObjectId(3u), ObjectId(5u)};
-  baked.doors.group_ends = {1, 2, 4};
-  for (std::uint32_t set = 0; set < baked.sets.count(); ++set) {
-    for (std::uint32_t group = 0; group < 3; ++group) {
-      baked.doors.hidden.push_back({group, (set + 1 + group) % baked.sets.count()});
-    }
-    baked.doors.hidden_ends.push_back(3 * (set + 1));
-  }
+  made::Random random(1);
+  made::addDoors(baked, {{ObjectId(3u)}, {ObjectId(5u)}, {ObjectId(3u), ObjectId(5u)}}, random);
   const Bytes bytes = bytesOf(baked);
   SetQuery query(*opened(bytes));
   const std::vector<Vec3d> eyes = eyesIn(baked.octree);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sightline/pvs/query/set_query.h"
 #include "sightline/pvs/query/sight_file.h"
 #include "src/pvs/bake/file/encode_sight.h"
 #include "tests/support/made_visibility.h"
@@ -24,6 +25,20 @@ inline Bytes bytesOf(const BakedVisibility& baked) {
 
 inline Result<SightFile> opened(std::span<const std::byte> bytes) {
   return SightFile::fromBytes(bytes, "made.sight");
+}
+
+// What a look-up returned, as flags by object.
+inline std::vector<bool> membersOf(const BoxTreeView& boxes, const VisibleSet& found) {
+  std::vector<bool> members(boxes.objects.size(), false);
+  for (const std::uint32_t node : found.nodes) {
+    for (const ObjectId object : boxes.objectsBelow(node)) {
+      members[object.value] = true;
+    }
+  }
+  return members;
+}
+inline std::vector<bool> seenBy(SetQuery& query, const Vec3d& eye, double near_distance) {
+  return membersOf(query.boxes(), query.find(eye, near_distance));
 }
 
 inline bool oneLine(const std::string& text) {

@@ -3,80 +3,43 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <iterator>
-#include <span>
 
 #include "scenes/procedural.h"
-#include "src/pvs/bake/file/encode_sight.h"
 #include "tests/pvs/edited_scene.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
 
+using test::Answered;
+using test::AnsweredBake;
 using test::EditedScene;
 using test::RandomEdits;
 using test::roomScene;
 using test::torn;
-
-// The file of a bake, and what it leaves for the next one.
-struct Made {
-  std::vector<std::byte> file, answers;
-  std::vector<std::uint64_t> parts;  // their ids
-  BakeStats stats{};
-  Bake::TakenOver taken{};
-};
-
-// answers: of an earlier bake, or none.
-Made madeWith(const Scene& scene, BakeSettings settings, const std::vector<std::byte>& answers) {
-  settings.answers = true;
-  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
-  Made made;
-  if (!bake) {
-    ADD_FAILURE() << bake.error().message;
-    return made;
-  }
-  if (!answers.empty()) {
-    const Result<Bake::TakenOver> taken = bake->takeOver(answers);
-    EXPECT_TRUE(taken) << (taken ? "" : taken.error().message);
-    made.taken = taken ? *taken : Bake::TakenOver{};
-  }
-  const BakedParts parts = bake->bakeAll(serialFor, {}, &made.stats);
-  for (const auto& [id, part] : parts) {
-    made.parts.push_back(id);
-  }
-  const Result<BakedVisibility> baked = bake->assemble(parts);
-  EXPECT_TRUE(baked) << (baked ? "" : baked.error().message);
-  if (baked) {
-    made.file = pvs::encodeSight(*baked)->joined();
-    made.answers = bake->answers(parts);
-  }
-  return made;
-}
-
-// The same without anything that concerns updates.
-std::vector<std::byte> plainFile(const Scene& scene, const BakeSettings& settings) {
-  return pvs::encodeSight(test::baked(scene, settings))->joined();
-}
 
 struct Totals {
   std::uint64_t edits = 0, comparable = 0, questions = 0, asked = 0;
 };
 
 // Edits the scene so many times, one edit after the other. After each, the bake that takes over from the one
-// before has to give the bytes of a plain bake.
+// before has to give the bytes of a full bake, and the same parts: these are sized by how much is asked, not
+// by how much of it an earlier bake has answered.
 void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t seed, int edits,
                 Totals& totals) {
   RandomEdits random(seed);
-  Made before = madeWith(scene.scene(), settings, {});
-  EXPECT_EQ(before.file, plainFile(scene.scene(), settings)) << "seed " << seed;
+  Answered before = AnsweredBake(scene.scene(), settings).inFull();
+  EXPECT_EQ(before.file, sight_test::bytesOf(test::baked(scene.scene(), settings))) << "seed " << seed;
   std::string what = "seed " + std::to_string(seed);
   for (int i = 0; i < edits; ++i) {
     const EditedScene earlier = scene;
     what += "; " + random.edit(scene);
     const Scene now = scene.scene();
-    Made made = madeWith(now, settings, before.answers);
-    ASSERT_TRUE(made.file == plainFile(now, settings)) << what;
+    AnsweredBake bake(now, settings);
+    const Answered full = bake.inFull();
+    Answered made = bake.after(before.answers);
+    ASSERT_TRUE(made.file == full.file) << what;
+    ASSERT_EQ(made.parts, full.parts) << what;
     totals.edits += 1;
     if (made.taken.difference.empty()) {
       totals.comparable += 1;
@@ -87,7 +50,7 @@ void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t s
     if (i % 3 == 2) {
       scene = earlier;
       what += "; undone";
-      const Made undone = madeWith(scene.scene(), settings, made.answers);
+      const Answered undone = AnsweredBake(scene.scene(), settings).after(made.answers);
       ASSERT_TRUE(undone.file == before.file) << what;
     } else {
       before = std::move(made);
@@ -119,26 +82,6 @@ TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
                editsOf(7), totals);
   }
   expectReuse(totals);
-}
-
-// Parts are sized by how much is asked, not by how much of it an earlier bake has answered.
-TEST(Update, HasThePartsOfAFullBake) {
-  const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
-  EditedScene scene = roomScene(7);
-  RandomEdits random(7);
-  Made before = madeWith(scene.scene(), settings, {});
-  std::uint64_t asked = 0, asked_in_full = 0;
-  for (int i = 0; i < 4; ++i) {
-    const std::string what = random.edit(scene);
-    Made update = madeWith(scene.scene(), settings, before.answers);
-    const Made full = madeWith(scene.scene(), settings, {});
-    EXPECT_EQ(update.parts, full.parts) << what;
-    EXPECT_GT(full.parts.size(), 1u);
-    asked += update.stats.asked;
-    asked_in_full += full.stats.asked;
-    before = std::move(update);
-  }
-  EXPECT_LT(asked, asked_in_full / 2) << "the updates took over too little for this to say much";
 }
 
 TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
@@ -221,12 +164,13 @@ TEST(Update, AWallThatComesBeyondAllOthersHidesWhereNarrowingIsAllowed) {
                               .near_distance = 0.01,
                               .viewers = {Box{{0, 0, 0}, {2, 2, 2}}},
                               .narrowings = 1};
-  const Made before = madeWith(scene.scene(), settings, {});
+  const Answered before = AnsweredBake(scene.scene(), settings).inFull();
   scene.pieces.push_back(blockPiece({30, -6, 0.6f}, {30.5f, 8, 0.93f}, 0));
-  const Made made = madeWith(scene.scene(), settings, before.answers);
+  AnsweredBake bake(scene.scene(), settings);
+  const Answered full = bake.inFull(), made = bake.after(before.answers);
   EXPECT_EQ(made.taken.difference, "");
   EXPECT_EQ(made.taken.come, 1u);
-  EXPECT_TRUE(made.file == plainFile(scene.scene(), settings));
+  EXPECT_TRUE(made.file == full.file);
 }
 
 TEST(Update, GivesTheBytesOfAFullBakeInDemoScenes) {
@@ -249,7 +193,8 @@ TEST(Update, AsksNothingAgainWhereNothingChanged) {
     const BakeSettings settings{
         .occlusion = occlusion, .triangle_budget = 120, .max_depth = 2, .near_distance = 0.05};
     const Scene scene = roomScene(5, 2).scene();
-    const Made first = madeWith(scene, settings, {}), again = madeWith(scene, settings, first.answers);
+    AnsweredBake bake(scene, settings);
+    const Answered first = bake.inFull(), again = bake.after(first.answers);
     EXPECT_EQ(first.stats.asked, first.stats.questions);
     EXPECT_EQ(again.stats.questions, first.stats.questions);
     EXPECT_EQ(again.stats.asked, 0u);
@@ -265,9 +210,9 @@ TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
       EditedScene::of(test::sceneOf({test::block({1, 1.5f, 1}, {1.0625f, 1.5625f, 1.0625f})})).pieces[0];
   edited.pieces.push_back(crumb);
   const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
-  const Made before = madeWith(edited.scene(), settings, {});
+  const Answered before = AnsweredBake(edited.scene(), settings).inFull();
   edited.pieces.back().move({0.5f, 0, 0.25f});
-  const Made after = madeWith(edited.scene(), settings, before.answers);
+  const Answered after = AnsweredBake(edited.scene(), settings).after(before.answers);
   EXPECT_EQ(after.taken.come, 1u);
   EXPECT_EQ(after.taken.gone, 1u);
   EXPECT_LT(after.stats.asked * 20, after.stats.questions);
@@ -276,7 +221,7 @@ TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
 TEST(Update, RefusesBytesThatAreNoAnswers) {
   const Scene scene = roomScene(7, 2).scene();
   const BakeSettings settings{.triangle_budget = 120, .max_depth = 2, .answers = true};
-  const std::vector<std::byte> answers = madeWith(scene, settings, {}).answers;
+  const std::vector<std::byte> answers = AnsweredBake(scene, settings).inFull().answers;
   Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
   ASSERT_TRUE(bake);
   for (std::size_t length = 0; length < answers.size(); length += 1 + answers.size() / 97) {

@@ -86,7 +86,7 @@ TEST_F(WrittenParts, HaveTheBytesOfTheWholeHoweverManyCellsBecomeOne) {
   for (const double tolerance : {0.0, 0.05, 1.0, 1000.0}) {
     merged.push_back(expectTheSameBytes(
         scene,
-        {.triangle_budget = 300, .max_depth = 5, .near_distance = 0.05, .merge_tolerance = tolerance}));
+        {.triangle_budget = 300, .max_depth = 4, .near_distance = 0.05, .merge_tolerance = tolerance}));
   }
   EXPECT_LT(merged[0], merged[1]);
   EXPECT_GT(merged[2], 0u);
@@ -98,7 +98,7 @@ TEST_F(WrittenParts, HaveTheBytesOfTheWholeWhereViewersAreInAPart) {
   const Vec3f size = bounds.max - bounds.min;
   const std::vector<Box> viewers{{bounds.min + size * 0.13f, bounds.min + size * 0.47f},
                                  {bounds.min + size * 0.61f, bounds.min + size * 0.87f}};
-  for (const std::uint32_t depth : {0u, 1u, 3u, 5u}) {
+  for (const std::uint32_t depth : {0u, 1u, 3u, 4u}) {
     expectTheSameBytes(
         scene, {.triangle_budget = 300, .max_depth = depth, .near_distance = 0.05, .viewers = viewers});
   }

@@ -204,4 +204,22 @@ inline BakedVisibility visibility(const Visibility& settings = {}) {
   return baked;
 }
 
+// Adds groups of doors. Each hides a random set of most sets.
+inline void addDoors(BakedVisibility& baked, const std::vector<std::vector<ObjectId>>& groups,
+                     Random& random) {
+  BakedDoors& doors = baked.doors;
+  for (const std::vector<ObjectId>& group : groups) {
+    doors.doors.insert(doors.doors.end(), group.begin(), group.end());
+    doors.group_ends.push_back(static_cast<std::uint32_t>(doors.doors.size()));
+  }
+  for (std::uint32_t set = 0; set < baked.sets.count(); ++set) {
+    for (std::uint32_t group = 0; group < groups.size(); ++group) {
+      if (random() % 4 != 0) {
+        doors.hidden.push_back({group, random() % baked.sets.count()});
+      }
+    }
+    doors.hidden_ends.push_back(static_cast<std::uint32_t>(doors.hidden.size()));
+  }
+}
+
 }  // namespace sightline::made

@@ -7,8 +7,6 @@
 
 namespace sightline::pvs {
 
-using namespace pvs;
-
 void ChunkDecoder::Free::operator()(ZSTD_DCtx_s* context) const {
   ZSTD_freeDCtx(context);
 }

@@ -22,13 +22,13 @@ class ChunkDecoder {
 
   // Appends the nodes of a set; set < view.sets.size(). Returns false and appends nothing if its chunk is
   // corrupt. Allocates nothing more once it has seen the longest chunk.
-  bool readSet(const pvs::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
+  bool readSet(const SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
 
   // Bytes of chunks, as they are in the payload, that readSet has read so far.
   std::uint64_t bytesRead() const { return bytes_read_; }
 
   // Appends the contents of a chunk. Returns false and appends nothing if the chunk is corrupt.
-  bool decompress(const pvs::SightView& view, const pvs::Chunk& chunk, std::vector<std::byte>& raw);
+  bool decompress(const SightView& view, const Chunk& chunk, std::vector<std::byte>& raw);
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -32,7 +32,7 @@ Status checkViewerOptions(const ViewerOptions& options);
 
 struct ViewerSpace {
   std::vector<Box> boxes{};  // for BakeSettings::viewers; none: the scene's bounds
-  Json facts{};              // how they were found, their number and volume; null if there are none
+  Json facts{};              // how they were found; null if there are none
 
   // The corners of the box around them, world space: six numbers, or null.
   Json regionJson(const Vec3d& origin) const;

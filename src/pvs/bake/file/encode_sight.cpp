@@ -10,8 +10,6 @@
 namespace sightline::pvs {
 namespace {
 
-using namespace pvs;
-
 constexpr int kDatabaseLevel = 9;  // of zstd
 
 void encodeDatabase(const DatabaseBlob& blob, ChunkWriter& writer, EncodedChunks& encoded) {

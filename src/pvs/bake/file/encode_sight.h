@@ -20,7 +20,7 @@ void encodeDatabases(std::span<const DatabaseBlob> databases, Payload& payload, 
 EncodedChunks encodeChunks(const BakedVisibility& baked);
 
 // The input of structureBytes; both arguments must outlive it.
-pvs::SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded);
+SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded);
 
 // The bytes of a file: those of its structure, then those of its payload.
 struct SightBytes {

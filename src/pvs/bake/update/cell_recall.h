@@ -56,8 +56,6 @@ class CellRecall {
   // now. False if nothing is known about it.
   bool boundTriangles(const Vec3d& eye, Answer& answer);
 
-  // How close to the box of an occluder a line of sight may come without missing it, metres.
-
  private:
   // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each
   // corner: all that occluders in these boxes may hide.
