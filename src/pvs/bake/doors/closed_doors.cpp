@@ -1,6 +1,7 @@
 #include "src/pvs/bake/doors/closed_doors.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "src/pvs/bake/shaft.h"
 
@@ -8,9 +9,8 @@ namespace sightline::pvs {
 namespace {
 
 bool contains(std::span<const ObjectRun> runs, std::uint32_t position) {
-  return std::any_of(runs.begin(), runs.end(), [position](const ObjectRun& run) {
-    return run.begin <= position && position < run.end;
-  });
+  const auto after = std::ranges::upper_bound(runs, position, {}, &ObjectRun::begin);
+  return after != runs.begin() && position < std::prev(after)->end;
 }
 
 }  // namespace
@@ -53,8 +53,6 @@ void ClosedDoors::hideFrom(const Region& region, const CellBox& search, Runs& se
   doors.clear();
   std::size_t next = 0;  // in `before`
   for (std::uint32_t group = 0; group < scene_.doors.groups.size(); ++group) {
-    const std::vector<ObjectId>& members = scene_.doors.groups[group];
-    // All that is known to be hidden: by more than the region, and by the groups within this one.
     known_.clear();
     const auto know = [this](const Runs& runs) {
       unite(known_, runs, common_);
@@ -68,25 +66,34 @@ void ClosedDoors::hideFrom(const Region& region, const CellBox& search, Runs& se
         know(part.hidden);
       }
     }
-    subtract(seen, known_, left_);
-    hidden_.resetWithout(left_, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
     findSeenDoors(group, seen);
-    // A door that is hidden adds nothing, and a single one that is seen is a group by itself.
-    if (seen_doors_.size() == members.size() || seen_doors_.size() > 1) {
-      if (members.size() == 1) {
-        hideByConvex(members[0], region, search);
-      }
-      if (!surfaces_.empty() && region.ask_surfaces) {
-        hideBelow(0, group, region.box);
-      }
-    }
-    hidden_.complement(left_);
     HiddenByDoors found{.group = group};
-    subtract(seen, left_, found.hidden);
+    // A door that is hidden adds nothing, and a single one that is seen is a group by itself.
+    if (seen_doors_.size() == scene_.doors.groups[group].size() || seen_doors_.size() > 1) {
+      found.hidden = hiddenBy(group, region, search, seen);
+    } else {
+      intersect(seen, known_, found.hidden);
+    }
     if (!found.hidden.empty()) {
       doors.push_back(std::move(found));
     }
   }
+}
+
+Runs ClosedDoors::hiddenBy(std::uint32_t group, const Region& region, const CellBox& search,
+                           const Runs& seen) {
+  subtract(seen, known_, left_);
+  hidden_.resetWithout(left_, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+  if (const std::vector<ObjectId>& members = scene_.doors.groups[group]; members.size() == 1) {
+    hideByConvex(members[0], region, search);
+  }
+  if (!surfaces_.empty() && region.ask_surfaces) {
+    hideBelow(0, group, region.box);
+  }
+  hidden_.complement(left_);
+  Runs hidden;
+  subtract(seen, left_, hidden);
+  return hidden;
 }
 
 void ClosedDoors::findSeenDoors(std::uint32_t group, const Runs& seen) {

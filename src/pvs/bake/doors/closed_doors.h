@@ -37,6 +37,9 @@ class ClosedDoors {
     bool ask_surfaces = true;  // false: they hide from the box no more than is known
   };
   void hideFrom(const Region& region, const CellBox& search, Runs& seen, DoorRuns& doors);
+  // What of the seen objects known_ holds, or the group hides by being asked about. Takes time for each
+  // object of the scene. Requires seen_doors_.
+  Runs hiddenBy(std::uint32_t group, const Region& region, const CellBox& search, const Runs& seen);
   // Sets seen_doors_ to the doors of the group that may be seen.
   void findSeenDoors(std::uint32_t group, const Runs& seen);
   // Adds to hidden_ what a door's own convex occluders hide.
@@ -51,7 +54,8 @@ class ClosedDoors {
   // Scratch for the current region and group.
   std::vector<ObjectId> seen_doors_;
   ObjectMask hidden_;
-  Runs common_, known_, left_;
+  Runs common_, left_;
+  Runs known_;  // hidden by more than the region, and by the groups within this one
 };
 
 }  // namespace sightline::pvs
