@@ -288,7 +288,7 @@ Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
 }
 
 PartTask Bake::firstPart() const {
-  return {1, firstSearchDistance(data_->scene)};
+  return {kRootPart, firstSearchDistance(data_->scene)};
 }
 
 void add(BakeStats& sum, const BakeStats& stats) {
@@ -504,8 +504,8 @@ ReadCell cellReader(const Bake& bake, const BakeScene& scene, const ReadPart& re
 // Calls visit(id, content) for all parts, by ascending id, up to the first that cannot be read or for which
 // visit is false: that one's id is returned, else 0.
 template <typename Visit>
-std::uint64_t forEachPart(const BakeScene& scene, const ReadPart& read, std::uint64_t root, Visit&& visit) {
-  for (std::vector<std::uint64_t> level{root}; !level.empty();) {
+std::uint64_t forEachPart(const BakeScene& scene, const ReadPart& read, Visit&& visit) {
+  for (std::vector<std::uint64_t> level{kRootPart}; !level.empty();) {
     std::vector<std::uint64_t> next;
     for (const std::uint64_t id : level) {
       const std::optional<BakedPart> part = read(id);
@@ -531,8 +531,7 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
 Result<BakedVisibility> Bake::assemble(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   std::uint64_t broken = 0;
-  const std::optional<BakedCell> top =
-      cellOfParts(scene, cellReader(*this, scene, read), firstPart().id, broken);
+  const std::optional<BakedCell> top = cellOfParts(scene, cellReader(*this, scene, read), broken);
   if (!top) {
     return brokenPart(broken);
   }
@@ -560,8 +559,7 @@ Status Bake::writeSight(const std::string& file, const ReadPart& read, const Sig
   baked.record.settings = extras.settings;
   baked.databases = extras.databases;
   std::uint64_t broken = 0;
-  const Status written =
-      writeParts(file, scene, cellReader(*this, scene, read), firstPart().id, baked, broken);
+  const Status written = writeParts(file, scene, cellReader(*this, scene, read), baked, broken);
   return broken == 0 ? written : Status(brokenPart(broken));
 }
 
@@ -573,15 +571,14 @@ Witnesses Bake::witnesses(const BakedParts& parts) const {
 Result<Witnesses> Bake::witnesses(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
-  const std::uint64_t broken =
-      forEachPart(scene, read, firstPart().id, [&](std::uint64_t, const PartContent& content) {
-        std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content);
-        if (own) {
-          found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
-                           std::make_move_iterator(own->end()));
-        }
-        return own.has_value();
-      });
+  const std::uint64_t broken = forEachPart(scene, read, [&](std::uint64_t, const PartContent& content) {
+    std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content);
+    if (own) {
+      found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
+                       std::make_move_iterator(own->end()));
+    }
+    return own.has_value();
+  });
   if (broken != 0) {
     return brokenPart(broken);
   }
@@ -596,11 +593,10 @@ std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
 Result<std::vector<std::byte>> Bake::answers(const ReadPart& read) const {
   const BakeScene& scene = data_->scene;
   std::map<std::uint64_t, std::vector<std::byte>> kept;
-  const std::uint64_t broken =
-      forEachPart(scene, read, firstPart().id, [&](std::uint64_t id, const PartContent& content) {
-        kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
-        return true;
-      });
+  const std::uint64_t broken = forEachPart(scene, read, [&](std::uint64_t id, const PartContent& content) {
+    kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
+    return true;
+  });
   if (broken != 0) {
     return brokenPart(broken);
   }

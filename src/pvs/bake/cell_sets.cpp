@@ -36,15 +36,6 @@ std::uint64_t countOf(std::span<const ObjectRun> runs) {
   return count;
 }
 
-// Adds a position that is after all runs.
-void append(std::uint32_t position, Runs& runs) {
-  if (!runs.empty() && runs.back().end == position) {
-    runs.back().end = position + 1;
-  } else {
-    runs.push_back({position, position + 1});
-  }
-}
-
 }  // namespace
 
 CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
@@ -431,7 +422,7 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
         hidden = search_.hides(corners, choice_, hidden_, i);
       }
       if (hidden) {
-        append(i, common_);
+        appendRun({i, i + 1}, common_);
       }
     }
   }

@@ -62,11 +62,7 @@ void ObjectMask::complement(Runs& out) const {
     if (i % 64 == 0 && words_[i / 64] == ~std::uint64_t{0}) {
       i += 63;
     } else if (!contains(i)) {
-      if (!out.empty() && out.back().end == i) {
-        out.back().end = i + 1;
-      } else {
-        out.push_back({i, i + 1});
-      }
+      appendRun({i, i + 1}, out);
     }
   }
 }

@@ -19,6 +19,15 @@ struct ObjectRun {
 };
 using Runs = std::vector<ObjectRun>;
 
+// Adds a run that begins where the last one ends, or after it.
+inline void appendRun(const ObjectRun& run, Runs& runs) {
+  if (!runs.empty() && runs.back().end == run.begin) {
+    runs.back().end = run.end;
+  } else {
+    runs.push_back(run);
+  }
+}
+
 // out: the intersection. It must not alias a or b.
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 // out: the union. It must not alias a or b.

@@ -66,8 +66,10 @@ void sortOnce(std::vector<std::uint32_t>& nodes) {
 }  // namespace
 
 struct SetQuery::Impl {
-  Impl(SightFile opened, const SetQuerySettings& settings)
+  // of_file: the view of the opened file.
+  Impl(SightFile opened, const pvs::SightView& of_file, const SetQuerySettings& settings)
       : file(std::move(opened)),
+        view(of_file),
         octree(file.octree()),
         near_distance(file.record().near_distance),
         finder(octree),
@@ -77,13 +79,14 @@ struct SetQuery::Impl {
   }
 
   // The nodes of a set, decoded or looked up; nothing if its chunk is corrupt. Valid until the next call.
-  std::optional<std::span<const std::uint32_t>> nodesOf(const pvs::SightView& view, std::uint32_t set);
+  std::optional<std::span<const std::uint32_t>> nodesOf(std::uint32_t set);
   // Decodes or looks up a set other than the last one.
-  VisibleSet fetch(const pvs::SightView& view, std::uint32_t set);
+  VisibleSet fetch(std::uint32_t set);
   // The set without what closed doors hide of it.
-  VisibleSet withoutHidden(const pvs::SightView& view, std::uint32_t set);
+  VisibleSet withoutHidden(std::uint32_t set);
 
   SightFile file;
+  const pvs::SightView& view;
   OctreeView octree;
   double near_distance;
   CellFinder finder;
@@ -103,8 +106,7 @@ struct SetQuery::Impl {
   SetQueryStats stats;
 };
 
-std::optional<std::span<const std::uint32_t>> SetQuery::Impl::nodesOf(const pvs::SightView& view,
-                                                                      std::uint32_t set) {
+std::optional<std::span<const std::uint32_t>> SetQuery::Impl::nodesOf(std::uint32_t set) {
   switch (cache.state(set)) {
     case SetCache::State::kCached:
       return cache.use(set);
@@ -127,15 +129,15 @@ std::optional<std::span<const std::uint32_t>> SetQuery::Impl::nodesOf(const pvs:
   return std::nullopt;
 }
 
-VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) {
-  if (const auto nodes = nodesOf(view, set)) {
+VisibleSet SetQuery::Impl::fetch(std::uint32_t set) {
+  if (const auto nodes = nodesOf(set)) {
     return last = {set, *nodes};
   }
   ++stats.broken;
   return everything();
 }
 
-VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32_t set) {
+VisibleSet SetQuery::Impl::withoutHidden(std::uint32_t set) {
   if (left_of == set) {
     return left;
   }
@@ -147,7 +149,7 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
       continue;
     }
     // What cannot be decoded counts as seen.
-    if (const auto nodes = nodesOf(view, door.hidden)) {
+    if (const auto nodes = nodesOf(door.hidden)) {
       hidden_nodes.insert(hidden_nodes.end(), nodes->begin(), nodes->end());
       // Many groups may hide the same nodes.
       if (hidden_nodes.size() > 2 * view.boxes.nodes.size()) {
@@ -156,7 +158,7 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
     }
   }
   // The set comes last, so that it stays in the cache as the last one.
-  const VisibleSet open = fetch(view, set);
+  const VisibleSet open = fetch(set);
   if (open.id == VisibleSet::kEverything) {
     return open;
   }
@@ -170,8 +172,10 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
   return left = {next_id++, left_nodes};
 }
 
-SetQuery::SetQuery(SightFile file, const SetQuerySettings& settings)
-    : impl_(std::make_unique<Impl>(std::move(file), settings)) {}
+SetQuery::SetQuery(SightFile file, const SetQuerySettings& settings) {
+  const pvs::SightView& view = file.data_->view;
+  impl_ = std::make_unique<Impl>(std::move(file), view, settings);
+}
 SetQuery::~SetQuery() = default;
 SetQuery::SetQuery(SetQuery&&) noexcept = default;
 SetQuery& SetQuery::operator=(SetQuery&&) noexcept = default;
@@ -197,9 +201,9 @@ VisibleSet SetQuery::find(const Vec3d& eye, double near_distance) {
   }
   const std::uint32_t set = setOf(query.octree, query.octree.leaves[leaf], eye);
   if (query.any_closed) {
-    return query.withoutHidden(query.file.data_->view, set);
+    return query.withoutHidden(set);
   }
-  return set == query.last.id ? query.last : query.fetch(query.file.data_->view, set);
+  return set == query.last.id ? query.last : query.fetch(set);
 }
 
 void SetQuery::setClosedDoors(std::span<const ObjectId> doors) {

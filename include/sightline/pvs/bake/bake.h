@@ -148,9 +148,9 @@ struct OccluderCounts {
 class Bake {
  public:
   // scene and occluders need not outlive the plan. occluders: all that are to be considered; area_fraction =
-  // 1 omits none. Returns an error if settings are out of range, if there is neither a box of viewers nor an
-  // object with a finite box, if an occluder belongs to no object of the scene, or if a door is no object of
-  // the scene or hides nothing when it is closed, because of its material or its mark.
+  // 1 omits none. Returns an error if settings are out of range, if the scene has no object, or none with a
+  // finite box where no box of viewers is given, if an occluder belongs to no object of the scene, or if a
+  // door is no object of the scene or hides nothing when it is closed, because of its material or its mark.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {}, const ParallelFor& parallel_for = serialFor);
 

@@ -102,10 +102,9 @@ class PartFlattener {
   Flattener& flattener_;
 };
 
-}  // namespace
-
-std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t id,
-                                     std::uint64_t& broken) {
+// The cell of a part with all below it.
+std::optional<BakedCell> cellOfPart(const BakeScene& scene, const ReadCell& read, std::uint64_t id,
+                                    std::uint64_t& broken) {
   std::optional<PartCell> part = read(id);
   broken = id;
   if (!part) {
@@ -117,7 +116,7 @@ std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& rea
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(cellOfNumber(id).level);
   for (std::uint64_t i = 0; i < 8; ++i) {
-    std::optional<BakedCell> child = cellOfParts(scene, read, 8 * id + i, broken);
+    std::optional<BakedCell> child = cellOfPart(scene, read, 8 * id + i, broken);
     if (!child) {
       return std::nullopt;
     }
@@ -127,9 +126,14 @@ std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& rea
   return cell;
 }
 
-std::uint64_t flattenParts(const BakeScene& scene, const ReadCell& read, std::uint64_t root,
-                           Flattener& flattener) {
-  const std::uint64_t broken = PartFlattener(scene, read, flattener).add(root, nullptr);
+}  // namespace
+
+std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t& broken) {
+  return cellOfPart(scene, read, kRootPart, broken);
+}
+
+std::uint64_t flattenParts(const BakeScene& scene, const ReadCell& read, Flattener& flattener) {
+  const std::uint64_t broken = PartFlattener(scene, read, flattener).add(kRootPart, nullptr);
   if (broken == 0) {
     flattener.finish();
   }

@@ -21,14 +21,12 @@ struct PartCell {
 // Reads a part; nothing if it is missing, corrupt or of another plan.
 using ReadCell = std::function<std::optional<PartCell>(std::uint64_t id)>;
 
-// The cell of a part with all below it, merged where they touch. Nothing if a part cannot be read; `broken`
+// The root with all below it, merged where they touch. Nothing if a part cannot be read; `broken`
 // is then its id.
-std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t id,
-                                     std::uint64_t& broken);
+std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t& broken);
 
 // Gives the same cells to the flattener, each as soon as it is clear that it stays as it is. At most one part
 // and eight leaves a level are in memory. Returns the id of a part that cannot be read, or 0.
-std::uint64_t flattenParts(const BakeScene& scene, const ReadCell& read, std::uint64_t root,
-                           Flattener& flattener);
+std::uint64_t flattenParts(const BakeScene& scene, const ReadCell& read, Flattener& flattener);
 
 }  // namespace sightline::pvs

@@ -17,6 +17,8 @@ namespace sightline::pvs {
 
 inline constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
+inline constexpr std::uint64_t kRootPart = 1;  // the id of the part of the octree's root
+
 // The header of a part. After it come blocks of bytes, each with its length before it: the cells, if the part
 // has leaves, or what it sees, if it was divided into parts; the witnesses, if they are recorded; and the
 // answers, if they are. The cells, what is seen, and the witnesses are packed.

@@ -50,7 +50,7 @@ class PayloadOnDisk final : public Payload {
 
 }  // namespace
 
-Status writeParts(const std::string& file, const BakeScene& scene, const ReadCell& read, std::uint64_t root,
+Status writeParts(const std::string& file, const BakeScene& scene, const ReadCell& read,
                   BakedVisibility& baked, std::uint64_t& broken) {
   const auto notSound = [&](const Error& error) {
     return Error{file + " cannot be written: the data is not sound: " + error.message};
@@ -66,7 +66,7 @@ Status writeParts(const std::string& file, const BakeScene& scene, const ReadCel
   const ReadCell read_while_kept = [&](std::uint64_t id) {
     return payload.status() ? read(id) : std::optional<PartCell>();
   };
-  broken = flattenParts(scene, read_while_kept, root, flattener);
+  broken = flattenParts(scene, read_while_kept, flattener);
   if (const Status kept = payload.status(); !kept) {
     broken = 0;
     return kept;
