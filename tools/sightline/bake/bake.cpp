@@ -112,12 +112,8 @@ Result<Checkpoint> openOutputs(const BakeOptions& options) {
   return Checkpoint::open(options.partsFile(), useOf(options));
 }
 
-// The answers that the update takes over; none without --update.
+// The answers that the update takes over.
 Result<std::vector<std::byte>> loadAnswers(const BakeOptions& options) {
-  std::vector<std::byte> bytes;
-  if (options.update.empty()) {
-    return bytes;
-  }
   const std::string file = options.answersBefore();
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
@@ -131,37 +127,76 @@ Result<std::vector<std::byte>> loadAnswers(const BakeOptions& options) {
     return text.error();
   }
   const std::span<const std::byte> read = std::as_bytes(std::span(*text));
-  bytes.assign(read.begin(), read.end());
-  return bytes;
+  return std::vector<std::byte>(read.begin(), read.end());
+}
+
+// What an update goes on from.
+struct Before {
+  SightFile file;
+  std::vector<std::byte> answers;
+};
+
+// The files that --update names; nothing without it.
+Result<std::optional<Before>> openBefore(const BakeOptions& options) {
+  if (options.update.empty()) {
+    return std::optional<Before>();
+  }
+  Result<SightFile> file = SightFile::open(options.update);
+  if (!file) {
+    return file.error();
+  }
+  Result<std::vector<std::byte>> answers = loadAnswers(options);
+  if (!answers) {
+    return answers.error();
+  }
+  return std::optional(Before{std::move(*file), std::move(*answers)});
 }
 
 // Takes over the answers of the bake that wrote the file.
-Result<Bake::TakenOver> takeOver(const SightFile& before, const BakeOptions& options,
-                                 std::vector<std::byte> answers, Bake& bake) {
-  Result<Bake::TakenOver> taken = bake.takeOver(std::move(answers));
+Result<Bake::TakenOver> takeOver(Before& before, const BakeOptions& options, Bake& bake) {
+  Result<Bake::TakenOver> taken = bake.takeOver(std::move(before.answers));
   if (!taken) {
     return Error{fmt::format("{}: {}", options.answersBefore(), taken.error().message)};
   }
-  if (taken->scene != before.scene()) {
+  if (taken->scene != before.file.scene()) {
     return Error{fmt::format("{}: is of another bake than {}; bake in full, without --update",
                              options.answersBefore(), options.update)};
   }
   return taken;
 }
 
+// The scene in which nothing is left of the doors: viewers walk through open ones.
+Scene withoutDoors(const Scene& scene, std::span<const std::vector<ObjectId>> doors) {
+  Scene without = scene;
+  for (const std::vector<ObjectId>& group : doors) {
+    for (const ObjectId door : group) {
+      without.objects[door.value].index_count = 0;
+    }
+  }
+  return without;
+}
+
+// The eyes of the camera path that databases of viewpoints follow; none if no path is given.
+Result<std::vector<Vec3d>> viewpointsOf(const BakeOptions& options, const Scene& scene) {
+  std::vector<Vec3d> eyes;
+  if (options.viewpoint_path.empty()) {
+    return eyes;
+  }
+  const Result<Walk> walk = loadWalk({.path = options.viewpoint_path}, options.common.scene, scene);
+  if (!walk) {
+    return walk.error();
+  }
+  for (const std::uint32_t frame : walk->frames) {
+    eyes.push_back(walk->view(frame, scene).eye);
+  }
+  return eyes;
+}
+
 Result<Planned> planBake(const BakeOptions& options) {
   base::Stopwatch watch;
-  std::optional<SightFile> before;
-  if (!options.update.empty()) {
-    Result<SightFile> opened = SightFile::open(options.update);
-    if (!opened) {
-      return opened.error();
-    }
-    before = std::move(*opened);
-  }
-  Result<std::vector<std::byte>> answers = loadAnswers(options);
-  if (!answers) {
-    return answers.error();
+  Result<std::optional<Before>> before = openBefore(options);
+  if (!before) {
+    return before.error();
   }
   Result<Scene> scene = loadScene(options.common.scene);
   if (!scene) {
@@ -174,29 +209,18 @@ Result<Planned> planBake(const BakeOptions& options) {
   const Threads threads(options.common.threads);
   const CrackClosing closing = closeCracksOf(*scene, options.crack_width, threads.parallelFor());
   const double load_us = watch.lap();
-  std::optional<Scene> walked;  // without doors, if there are any: viewers walk through open ones
+  std::optional<Scene> walked;
   if (!doors->empty()) {
-    walked = *scene;
-    for (const std::vector<ObjectId>& group : *doors) {
-      for (const ObjectId door : group) {
-        walked->objects[door.value].index_count = 0;
-      }
-    }
+    walked = withoutDoors(*scene, *doors);
   }
   Result<ViewerSpace> viewers =
       findViewers(options.viewers, options.common.scene, walked ? *walked : *scene, threads.parallelFor());
   if (!viewers) {
     return viewers.error();
   }
-  std::vector<Vec3d> viewpoints;
-  if (!options.viewpoint_path.empty()) {
-    const Result<Walk> walk = loadWalk({.path = options.viewpoint_path}, options.common.scene, *scene);
-    if (!walk) {
-      return walk.error();
-    }
-    for (const std::uint32_t frame : walk->frames) {
-      viewpoints.push_back(walk->view(frame, *scene).eye);
-    }
+  Result<std::vector<Vec3d>> viewpoints = viewpointsOf(options, *scene);
+  if (!viewpoints) {
+    return viewpoints.error();
   }
   BakeSettings settings = bakeSettings(options, *scene, *viewers);
   settings.doors = std::move(*doors);
@@ -207,15 +231,15 @@ Result<Planned> planBake(const BakeOptions& options) {
     return bake.error();
   }
   std::optional<Bake::TakenOver> update;
-  if (before) {
-    Result<Bake::TakenOver> taken = takeOver(*before, options, std::move(*answers), *bake);
+  if (*before) {
+    Result<Bake::TakenOver> taken = takeOver(**before, options, *bake);
     if (!taken) {
       return taken.error();
     }
     update = std::move(*taken);
   }
-  return Planned{std::move(*scene), closing.note(), std::move(*viewers),   std::move(*bake),
-                 load_us,           watch.lap(),    std::move(viewpoints), std::move(update)};
+  return Planned{std::move(*scene), closing.note(), std::move(*viewers),    std::move(*bake),
+                 load_us,           watch.lap(),    std::move(*viewpoints), std::move(update)};
 }
 
 // Writes the files that belong beside the baked one.

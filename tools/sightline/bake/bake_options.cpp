@@ -18,14 +18,9 @@ constexpr double kMinNear = 1e-6;  // metres
 constexpr std::uint32_t kMaxMib = 1u << 20;
 constexpr std::uint64_t kMinBudget = 100, kBudgetShare = 50;
 
-}  // namespace
-
-void addBakeOptions(CLI::App& command, BakeOptions& options) {
+// How far the bake divides cells, and how large the file may be.
+void addSizeOptions(CLI::App& command, BakeOptions& options) {
   BakeSettings& settings = options.settings;
-  addCommonOptions(command, options.common);
-  command.add_option("-o,--output", options.output, "the baked file to write, F.sight")
-      ->required()
-      ->type_name(kFileType);
   command
       .add_option(
           "--triangle-budget", settings.triangle_budget,
@@ -43,15 +38,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "--depth", settings.max_depth,
           "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
       ->check(CLI::Range(0u, kMaxOctreeDepth));
-  command
-      .add_option("--witnesses", options.witnesses,
-                  "also write what hides each object that is not in a set, for `sightline check`")
-      ->type_name(kFileType);
-  addDecimalOption(
-      command, "--near-distance", settings.near_distance, kMinNear, kMax,
-      "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
-      "tan(fovy / 2)^2 * (1 + aspect^2))");
-  addCrackWidthOption(command, options.crack_width);
+}
+
+// What hides objects.
+void addOcclusionOptions(CLI::App& command, BakeOptions& options) {
+  BakeSettings& settings = options.settings;
   command
       .add_option(
           "--occlusion", options.occlusion,
@@ -84,7 +75,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "objects that hide only while they are closed, by number or by name, where * stands for any text "
           "(several: a,b,c); of a+b, such as two that lead into one room, is stored what they hide together")
       ->check(isNotEmpty());
-  addViewerOptions(command, options.viewers);
+}
+
+// Which occluders are looked for, and where cells are divided and joined.
+void addSearchOptions(CLI::App& command, BakeOptions& options) {
+  BakeSettings& settings = options.settings;
   addDecimalOption(
       command, "--search-distance", settings.search_distance, 0.0, kMax,
       fmt::format("occluders are looked for within so many metres at first; 0: an eighth of the scene's "
@@ -109,6 +104,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
               "are many (default: 1024; 0 with more than {} objects)",
               BakeSettings::kManyObjects))
       ->check(CLI::Range(0u, kMaxMib));
+}
+
+// Which occluder databases are stored as well.
+void addDatabaseOptions(CLI::App& command, BakeOptions& options) {
   command
       .add_option("--databases", options.databases, "occluder databases to store as well (several: a,b,c)")
       ->check(isOneOf({kBakedDatabases.begin(), kBakedDatabases.end()}, true));
@@ -129,6 +128,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                    "minimum-sets: weight of the pixels of occluders");
   command.add_flag("--set-rest", viewpoints.first_hit_after_sets,
                    "minimum-sets: where they end, lists go on by first hit");
+}
+
+// What a bake takes over from an earlier one, and what of one it writes over.
+void addUpdateOptions(CLI::App& command, BakeOptions& options) {
   command.add_flag("--answers", options.answers,
                    "also write F.sight.answers, from which --update goes on after a change of the scene");
   command
@@ -142,6 +145,31 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       "go on with an unfinished bake of the same scene and settings; says what of it is damaged");
   command.add_flag("--restart", options.restart, "throw away what an unfinished bake left")->excludes(resume);
   command.add_flag("--force", options.force, "write over F.sight also where it is not a baked file");
+}
+
+}  // namespace
+
+// The order is that of --help.
+void addBakeOptions(CLI::App& command, BakeOptions& options) {
+  addCommonOptions(command, options.common);
+  command.add_option("-o,--output", options.output, "the baked file to write, F.sight")
+      ->required()
+      ->type_name(kFileType);
+  addSizeOptions(command, options);
+  command
+      .add_option("--witnesses", options.witnesses,
+                  "also write what hides each object that is not in a set, for `sightline check`")
+      ->type_name(kFileType);
+  addDecimalOption(
+      command, "--near-distance", options.settings.near_distance, kMinNear, kMax,
+      "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
+      "tan(fovy / 2)^2 * (1 + aspect^2))");
+  addCrackWidthOption(command, options.crack_width);
+  addOcclusionOptions(command, options);
+  addViewerOptions(command, options.viewers);
+  addSearchOptions(command, options);
+  addDatabaseOptions(command, options);
+  addUpdateOptions(command, options);
 }
 
 Result<std::vector<std::string>> databaseNames(const BakeOptions& options) {
