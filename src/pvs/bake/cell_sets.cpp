@@ -44,11 +44,13 @@ CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
       search_(scene),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.sampleBytes()),
       surfaces_(scene, scene.panels),
-      closed_doors_(scene, samples_) {}
+      closed_doors_(scene, samples_),
+      witnesses_(scene) {}
 
 void CellBaker::startCell(const OctreeCell& cell) {
   cell_ = cellNumber(cell);
   recall_.startCell(cell_);
+  witnesses_.startCell(cell_);
 }
 
 BakeStats CellBaker::stats() const {
@@ -205,7 +207,7 @@ void CellBaker::removeFused(const CellBox& box, const RegionEffort& effort, Cell
 
 void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, const RegionEffort& effort,
                                 Runs& seen) {
-  part_ = part;
+  witnesses_.startPart(part);
   if (seen.empty()) {
     return;
   }
@@ -248,7 +250,7 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region, co
   }
   if (surfacesHide(number, region, effort)) {
     hidden_nodes_.push_back(number);
-    recordSurfaces(objects);
+    witnesses_.addSurfaces(surfaces_, objects, hidden_);
     hidden_.add(std::span(&objects, 1));
     return;
   }
@@ -257,57 +259,8 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region, co
   }
 }
 
-void CellBaker::recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects) {
-  const ConvexOccluder& convex = scene_.occluders[occluder];
-  HidingWitness witness{.kind = WitnessKind::kConvex, .occluder = convex.id.value, .object = convex.object};
-  record(std::move(witness), objects);
-}
-
-void CellBaker::recordSurfaces(const ObjectRun& objects) {
-  HidingWitness witness{.kind = surfaces_.decidedBy()};
-  if (witness.kind == WitnessKind::kSurfaces) {
-    const FusedOcclusion::Proof& proof = surfaces_.questions().proof();
-    witness.object = ObjectId(proof.object);
-    witness.from = proof.from;
-    witness.to = proof.to;
-  }
-  record(std::move(witness), std::span(&objects, 1));
-}
-
-void CellBaker::record(HidingWitness witness, std::span<const ObjectRun> objects) {
-  if (!scene_.settings.witnesses) {
-    return;
-  }
-  witness.cell = cell_;
-  witness.part = part_;
-  for (const ObjectRun& run : objects) {
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      if (hidden_.contains(i)) {
-        continue;
-      }
-      if (!witness.hidden.empty() && witness.hidden.back().end == i) {
-        witness.hidden.back().end = i + 1;
-      } else {
-        witness.hidden.push_back({i, i + 1});
-      }
-    }
-  }
-  if (!witness.hidden.empty()) {
-    witnesses_.push_back(std::move(witness));
-  }
-}
-
-void CellBaker::forgetSides() {
-  const auto other = std::find_if(witnesses_.rbegin(), witnesses_.rend(),
-                                  [this](const HidingWitness& witness) { return witness.cell != cell_; });
-  witnesses_.erase(
-      std::remove_if(other.base(), witnesses_.end(),
-                     [](const HidingWitness& witness) { return witness.part != WitnessPart::kWhole; }),
-      witnesses_.end());
-}
-
 void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen) {
-  part_ = part;
+  witnesses_.startPart(part);
   if (corners.empty()) {
     seen.clear();  // there are no viewers
     return;
@@ -368,24 +321,9 @@ void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
   const std::span<const ConvexSearch::Found> found =
       lists != nullptr ? search_.hiddenFrom(corners, choice_, hidden_, seen_from_side_, *lists)
                        : search_.hiddenFrom(corners, choice_, hidden_);
-  if (scene_.settings.witnesses) {
-    recordFound(found);
-  }
+  witnesses_.addFound(found, hidden_);
   for (const ConvexSearch::Found& by_one : found) {
     hidden_.add({&by_one.objects, 1});
-  }
-}
-
-void CellBaker::recordFound(std::span<const ConvexSearch::Found> found) {
-  std::vector<ConvexSearch::Found> sorted(found.begin(), found.end());
-  std::ranges::sort(sorted, {}, [](const auto& f) { return std::pair(f.occluder, f.objects.begin); });
-  for (std::size_t i = 0; i < sorted.size();) {
-    common_.clear();
-    const std::uint32_t occluder = sorted[i].occluder;
-    for (; i < sorted.size() && sorted[i].occluder == occluder; ++i) {
-      common_.push_back(sorted[i].objects);
-    }
-    recordConvex(occluder, common_);
   }
 }
 
@@ -402,7 +340,7 @@ void CellBaker::hideBySamples(std::span<const Vec3d> corners) {
     if (!hidden_.contains(scene_.position_of_occluder[i]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
         samples_.hiddenFromAll(i, samples, common_)) {
-      recordConvex(i, common_);
+      witnesses_.addConvex(i, common_, hidden_);
       hidden_.add(common_);
     }
   }

@@ -18,6 +18,7 @@
 #include "src/pvs/bake/seen_sets.h"
 #include "src/pvs/bake/surfaces/node_occlusion.h"
 #include "src/pvs/bake/update/cell_recall.h"
+#include "src/pvs/bake/witness_recorder.h"
 
 namespace sightline::pvs {
 
@@ -57,9 +58,9 @@ class CellBaker {
   std::uint64_t work() const { return work_; }
   // The last cell is divided. Forgets what hides objects from the sides of its plane: the cells below it have
   // planes of their own, and if they become one cell again, it has theirs.
-  void forgetSides();
+  void forgetSides() { witnesses_.forgetSides(); }
   // What hid objects since the last call; empty if the settings do not ask for it.
-  std::vector<HidingWitness> takeWitnesses() { return std::exchange(witnesses_, {}); }
+  std::vector<HidingWitness> takeWitnesses() { return witnesses_.take(); }
   // What was asked since the last call, and the answers; empty if the settings do not ask for it.
   CellAnswers takeAnswers() { return recall_.takeAnswers(); }
 
@@ -98,11 +99,6 @@ class CellBaker {
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
   // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
   bool seesFewer(const Vec3d& eye, double triangles);
-  // Records, if it is asked for, that these objects are hidden, as far as hidden_ does not hold them yet.
-  void recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects);
-  void recordFound(std::span<const ConvexSearch::Found> found);
-  void recordSurfaces(const ObjectRun& objects);
-  void record(HidingWitness witness, std::span<const ObjectRun> objects);
 
   const BakeScene& scene_;
   CellRecall recall_;
@@ -110,6 +106,7 @@ class CellBaker {
   SampleStore samples_;
   NodeOcclusion surfaces_;
   ClosedDoors closed_doors_;
+  WitnessRecorder witnesses_;
   // By level: lists of the last cell there within which something was asked.
   struct Handed {
     std::uint64_t cell = 0;  // its number; 0 if there is none
@@ -129,9 +126,7 @@ class CellBaker {
   std::vector<std::uint32_t> hidden_nodes_;
   std::vector<CoarseBox> followed_;
   std::uint64_t questions_ = 0, asked_ = 0, work_ = 0;
-  std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
-  WitnessPart part_ = WitnessPart::kWhole;
 };
 
 }  // namespace sightline::pvs
