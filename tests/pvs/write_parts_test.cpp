@@ -2,10 +2,8 @@
 // read twice.
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +15,7 @@
 #include "tests/pvs/bake_scenes.h"
 #include "tests/pvs/door_scenes.h"
 #include "tests/pvs/sight_checks.h"
+#include "tests/support/full_disk.h"
 
 namespace sightline {
 namespace {
@@ -168,8 +167,8 @@ TEST_F(WrittenParts, GiveTheWitnessesAndAnswersOfThoseInMemory) {
   }
 }
 
-// Limits on file sizes simulate a disk that is full: at the first set, somewhere in the payload, and while
-// the payload is moved behind the structure.
+// The disk is full at the first set, somewhere in the payload, and while the payload is moved behind the
+// structure.
 TEST_F(WrittenParts, LeaveTheOldFileWhereTheDiskIsFullAndAreReadNoFurther) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 0});
   const Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene),
@@ -184,22 +183,18 @@ TEST_F(WrittenParts, LeaveTheOldFileWhereTheDiskIsFullAndAreReadNoFurther) {
   ASSERT_EQ(sight_test::errorOf(bake->writeSight(file_, read)), "");
   const auto before = content();
   ASSERT_EQ(reads, parts.size());
-
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   for (const std::size_t room : {std::size_t{0}, std::size_t{1000}, before.size() - 1}) {
-    const rlimit small{room, limit.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    std::string error;
     reads = 0;
-    const std::string error = sight_test::errorOf(bake->writeSight(file_, read));
-    setrlimit(RLIMIT_FSIZE, &limit);
+    {
+      const test::FullDisk full(room);
+      error = sight_test::errorOf(bake->writeSight(file_, read));
+    }
     EXPECT_NE(error.find("File too large"), std::string::npos) << error;
     EXPECT_EQ(reads == parts.size(), room == before.size() - 1) << room;
     EXPECT_TRUE(content() == before);
     EXPECT_EQ(filesThere(), 1u);
   }
-  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace

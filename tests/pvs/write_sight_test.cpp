@@ -1,16 +1,15 @@
 #include "sightline/pvs/bake/write_sight.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "tests/pvs/sight_checks.h"
+#include "tests/support/full_disk.h"
 
 namespace sightline::sight_test {
 namespace {
@@ -99,22 +98,17 @@ TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
   EXPECT_EQ(folder.names(), Names{"a.sight"});
 }
 
-// A limit on file sizes simulates a full disk.
 TEST(WriteSight, LeavesTheOldFileUntouchedWhenTheDiskIsFull) {
   const Folder folder;
   const std::string name = folder.file("a.sight");
   ASSERT_EQ(errorOf(writeSight(name, made::visibility())), "");
   const std::string before = contentOf(name);
 
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const rlimit small{1000, limit.rlim_max};
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string error = errorOf(writeSight(name, made::visibility({.seed = 5})));
-  setrlimit(RLIMIT_FSIZE, &limit);
-  std::signal(SIGXFSZ, handler);
-
+  std::string error;
+  {
+    const test::FullDisk full(1000);
+    error = errorOf(writeSight(name, made::visibility({.seed = 5})));
+  }
   EXPECT_NE(error.find("File too large"), std::string::npos) << error;
   EXPECT_EQ(contentOf(name), before);
   EXPECT_EQ(folder.names(), Names{"a.sight"});
