@@ -428,6 +428,28 @@ TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
   }
 }
 
+// A cell takes far longer with surfaces than with convex occluders alone.
+TEST(Bake, PartsOfMoreWorkAreFewerCells) {
+  const Scene scene = randomScene(3);
+  const auto partsWith = [&](BakeOcclusion occlusion, std::uint32_t& most_leaves) {
+    const Result<Bake> bake =
+        Bake::plan(scene.view(), allOccluders(scene),
+                   {.occlusion = occlusion, .max_depth = 3, .near_distance = 0.1, .merge_tolerance = 0.0});
+    EXPECT_TRUE(bake);
+    const BakedParts parts = bake->bakeAll();
+    for (const auto& [id, part] : parts) {
+      most_leaves = std::max(most_leaves, bake->summaryOf(part).leaves);
+    }
+    EXPECT_TRUE(bake->assemble(parts));
+    return parts.size();
+  };
+  std::uint32_t most_convex = 0, most_fused = 0;
+  const std::size_t convex = partsWith(BakeOcclusion::kConvex, most_convex);
+  const std::size_t fused = partsWith(BakeOcclusion::kFused, most_fused);
+  EXPECT_GT(fused, 2 * convex);
+  EXPECT_LT(2 * most_fused, most_convex);
+}
+
 // Bakes each part by a worker of its own, the last ones of each level first.
 BakedParts partsBackwards(const Bake& bake) {
   BakedParts parts;
@@ -519,33 +541,16 @@ TEST(Bake, KeepsNoSamplesAndLooksAtAnyDistanceWhereObjectsAreMany) {
   }
 }
 
-// A cell takes far longer with surfaces than with convex occluders alone, so the parts are fewer cells.
-TEST(Bake, FusedSetsAreSmallerInSmallerPartsAndLeaveOutNothingThatIsSeen) {
+TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
-  const OccluderSet occluders = allOccluders(scene);
-  struct Outcome {
-    std::size_t parts = 0, hidden = 0;
-    std::uint32_t most_leaves = 0;  // of a part
-  };
-  const auto outcomeOf = [&](BakeOcclusion occlusion) {
-    const Result<Bake> bake =
-        Bake::plan(scene.view(), occluders,
-                   {.occlusion = occlusion, .max_depth = 3, .near_distance = 0.1, .merge_tolerance = 0.0});
-    const BakedParts parts = bake->bakeAll();
-    Outcome outcome{.parts = parts.size()};
-    for (const auto& [id, part] : parts) {
-      outcome.most_leaves = std::max(outcome.most_leaves, bake->summaryOf(part).leaves);
-    }
-    const Result<BakedVisibility> result = bake->assemble(parts);
-    BakeJudge judge(scene, *result);
-    judge.judge(1, 3, 0.1, 21);
-    outcome.hidden = judge.hidden;
-    return outcome;
-  };
-  const Outcome convex = outcomeOf(BakeOcclusion::kConvex), fused = outcomeOf(BakeOcclusion::kFused);
-  EXPECT_GT(fused.parts, 2 * convex.parts);
-  EXPECT_LT(2 * fused.most_leaves, convex.most_leaves);
-  EXPECT_GT(fused.hidden, convex.hidden + convex.hidden / 10);
+  BakeSettings settings{.max_depth = 2, .near_distance = 0.1};
+  const BakedVisibility convex = baked(scene, settings);
+  settings.occlusion = BakeOcclusion::kFused;
+  const BakedVisibility fused = baked(scene, settings);
+  BakeJudge judge_convex(scene, convex), judge(scene, fused);
+  judge_convex.judge(2, 1, 0.1, 21);
+  judge.judge(2, 1, 0.1, 21);
+  EXPECT_GT(judge.hidden, judge_convex.hidden + judge_convex.hidden / 10);
 }
 
 // An L, lying on its longer side.

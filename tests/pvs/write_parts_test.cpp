@@ -112,7 +112,7 @@ TEST_F(WrittenParts, HaveTheBytesOfTheWholeWithAByteBudget) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 0});
   BakeSettings settings{.triangle_budget = 300, .max_depth = 0, .near_distance = 0.05};
   const std::size_t fewest = sight_test::bytesOf(test::baked(scene, settings)).size();
-  settings.max_depth = 4;
+  settings.max_depth = 3;
   const BakedVisibility whole = test::baked(scene, settings);
   settings.byte_budget = (fewest + sight_test::bytesOf(whole).size()) / 2;
   expectTheSameBytes(scene, settings);
