@@ -12,7 +12,6 @@ namespace {
 
 using shapes::Points;
 using shapes::Random;
-using test::Exact;
 
 // Whether closed hulls of a few points intersect, by testing all candidates for separating planes: through
 // three of the points, or through two and parallel to a side. Whole coordinates up to some thousands are
