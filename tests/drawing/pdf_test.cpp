@@ -1,13 +1,10 @@
 // Drawings as PDF: the structure of the file, and what its page draws.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <regex>
@@ -19,6 +16,7 @@
 #include "sightline/drawing/drawing.h"
 #include "src/drawing/pdf_file.h"
 #include "tests/drawing/made_drawings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline {
 namespace {
@@ -178,13 +176,11 @@ TEST(Pdf, QpdfFindsNothingToComplainAbout) {
     groups.push_back({{object(i, "wall \xc3\xa4 " + std::to_string(i))}});
   }
   groups[3].objects.push_back(object(77, "(more)"));
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("sightline-pdf-test-" + std::to_string(::getpid()) + ".pdf");
+  const test::TemporaryFolder folder;
   for (const Drawing& drawing : {drawingOf(groups), Drawing{}}) {
-    std::ofstream(path, std::ios::binary) << toPdf(drawing, {.title = "\xe2\x82\xac"});
-    EXPECT_EQ(std::system(("qpdf --check '" + path.string() + "' > /dev/null 2>&1").c_str()), 0);
+    const std::string file = folder.write("a.pdf", toPdf(drawing, {.title = "\xe2\x82\xac"}));
+    EXPECT_EQ(std::system(("qpdf --check '" + file + "' > /dev/null 2>&1").c_str()), 0);
   }
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 #include "sightline/io/file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "sightline/io/image.h"
 #include "sightline/io/import.h"
 #include "src/io/assimp.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline {
 namespace {
@@ -18,19 +17,9 @@ namespace fs = std::filesystem;
 
 class Files : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = fs::temp_directory_path() / ("sightline_files_" + std::to_string(::getpid()));
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
+  std::string path(const std::string& name) const { return folder.file(name); }
 
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::string put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-    return path(name);
-  }
-
-  fs::path folder;
+  const test::TemporaryFolder folder;
 };
 
 TEST_F(Files, BytesComeBackAsTheyWereWritten) {
@@ -42,13 +31,13 @@ TEST_F(Files, BytesComeBackAsTheyWereWritten) {
   EXPECT_EQ(readFile(path("a.bin")).value(), bytes);
   ASSERT_TRUE(writeFile(path("a.bin"), "short"));
   EXPECT_EQ(readFile(path("a.bin")).value(), "short") << "an older file is replaced, not overwritten in part";
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
-      << "nothing is left over";
+  EXPECT_EQ(folder.entries(), 1u) << "nothing is left over";
 }
 
 TEST_F(Files, WhatCannotBeReadIsNamedWithTheReason) {
   EXPECT_EQ(readFile(path("none")).error().message, path("none") + ": no such file");
-  EXPECT_EQ(readFile(folder.string()).error().message, folder.string() + ": is a directory, not a file");
+  EXPECT_EQ(readFile(folder.path().string()).error().message,
+            folder.path().string() + ": is a directory, not a file");
   EXPECT_EQ(readFile("/dev/null").error().message, "/dev/null: is not a regular file");
 }
 
@@ -56,9 +45,9 @@ TEST_F(Files, WhatCannotBeWrittenIsNamedAndLeavesNothing) {
   EXPECT_EQ(
       writeFile(path("no/such/folder"), "x").error().message.find(path("no/such/folder") + ": cannot be"),
       0u);
-  fs::create_directories(folder / "taken" / "by a folder");
+  fs::create_directories(folder.path() / "taken" / "by a folder");
   EXPECT_FALSE(writeFile(path("taken"), "x"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  EXPECT_EQ(folder.entries(), 1u);
 }
 
 TEST_F(Files, PicturesAreWrittenAsPng) {
@@ -80,15 +69,18 @@ TEST_F(Files, PicturesOfTheWrongSizeAreRefused) {
 }
 
 TEST_F(Files, ScenesOfUnknownKindAreRefused) {
-  EXPECT_NE(importScene(put("a.xyzzy", "x")).error().message.find("files ending in \".xyzzy\" are not read"),
+  EXPECT_NE(importScene(folder.write("a.xyzzy", "x"))
+                .error()
+                .message.find("files ending in \".xyzzy\" are not read"),
             std::string::npos);
-  EXPECT_NE(importScene(put("noextension", "x")).error().message.find("are not read"), std::string::npos);
+  EXPECT_NE(importScene(folder.write("noextension", "x")).error().message.find("are not read"),
+            std::string::npos);
   EXPECT_EQ(importScene(path("none.obj")).error().message, path("none.obj") + ": no such file");
-  fs::create_directories(folder / "folder.glb");
+  fs::create_directories(path("folder.glb"));
   EXPECT_EQ(importScene(path("folder.glb")).error().message,
             path("folder.glb") + ": is a directory, not a file");
   for (const char* name : {"empty.glb", "empty.gltf", "empty.obj", "empty.stl"}) {
-    EXPECT_EQ(importScene(put(name, "")).error().message, path(name) + ": the file is empty");
+    EXPECT_EQ(importScene(folder.write(name, "")).error().message, path(name) + ": the file is empty");
   }
 }
 
@@ -100,8 +92,8 @@ constexpr const char* kObj =
 constexpr const char* kMtl = "newmtl wall\nKd 0.5 0.25 1\nnewmtl glass\nd 0.5\n";
 
 TEST_F(Files, ObjIsReadWithItsMaterials) {
-  put("a.mtl", kMtl);
-  const Result<Scene> scene = importScene(put("a.obj", kObj));
+  folder.write("a.mtl", kMtl);
+  const Result<Scene> scene = importScene(folder.write("a.obj", kObj));
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->objects.size(), 2u);
   EXPECT_EQ(scene->object_names[0], "quad");
@@ -122,7 +114,7 @@ constexpr const char* kPly =
     "0 0 0\n2 0 0\n2 3 0\n0 3 0\n4 0 1 2 3\n";
 
 TEST_F(Files, PlyIsReadInTriangles) {
-  const Result<Scene> scene = importScene(put("a.PLY", kPly));
+  const Result<Scene> scene = importScene(folder.write("a.PLY", kPly));
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->objects.size(), 1u);
   EXPECT_EQ(scene->objects[0].triangleCount(), 2u);
@@ -133,7 +125,8 @@ TEST_F(Files, PlyThatIsCutOffIsRefused) {
   const std::string whole = kPly;
   const std::size_t last_line = whole.find("4 0 1 2 3");
   for (std::size_t size = 1; size <= last_line; ++size) {
-    EXPECT_FALSE(importScene(put("cut.ply", whole.substr(0, size)))) << "cut after " << size << " bytes";
+    EXPECT_FALSE(importScene(folder.write("cut.ply", whole.substr(0, size))))
+        << "cut after " << size << " bytes";
   }
   std::string binary =
       "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
@@ -145,11 +138,12 @@ TEST_F(Files, PlyThatIsCutOffIsRefused) {
   const std::size_t before_face = binary.size();
   binary.push_back(3);
   binary.append(reinterpret_cast<const char*>(indices), 12);
-  const Result<Scene> scene = importScene(put("whole.ply", binary));
+  const Result<Scene> scene = importScene(folder.write("whole.ply", binary));
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->triangleCount(), 1u);
   for (std::size_t size = 1; size <= before_face; ++size) {
-    EXPECT_FALSE(importScene(put("cut.ply", binary.substr(0, size)))) << "cut after " << size << " bytes";
+    EXPECT_FALSE(importScene(folder.write("cut.ply", binary.substr(0, size))))
+        << "cut after " << size << " bytes";
   }
 }
 
@@ -167,7 +161,7 @@ std::string binaryStl(const std::vector<float>& corners) {
 
 TEST_F(Files, StlIsReadAndWelded) {
   const Result<Scene> scene =
-      importScene(put("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})));
+      importScene(folder.write("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})));
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->objects.size(), 1u);
   EXPECT_EQ(scene->objects[0].triangleCount(), 2u);
@@ -176,7 +170,7 @@ TEST_F(Files, StlIsReadAndWelded) {
 
 TEST_F(Files, NumbersThatAreNotFiniteAreRefused) {
   const float nan = std::nanf("");
-  const Result<Scene> stl = importScene(put("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, nan, 0})));
+  const Result<Scene> stl = importScene(folder.write("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, nan, 0})));
   ASSERT_FALSE(stl);
   EXPECT_EQ(stl.error().message.find(path("a.stl") + ": "), 0u) << stl.error().message;
 }
@@ -184,8 +178,8 @@ TEST_F(Files, NumbersThatAreNotFiniteAreRefused) {
 TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
   const std::string stl = binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0});
   for (const std::string& file :
-       {put("cut.stl", stl.substr(0, 100)), put("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"),
-        put("noise.fbx", "nothing of the kind")}) {
+       {folder.write("cut.stl", stl.substr(0, 100)), folder.write("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"),
+        folder.write("noise.fbx", "nothing of the kind")}) {
     const Result<Scene> scene = importScene(file);
     if (scene) {
       EXPECT_TRUE(scene->objects.empty()) << file << " has no whole triangle";
@@ -197,8 +191,8 @@ TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
 }
 
 TEST_F(Files, WhatExceedsTheLimitsIsRefused) {
-  put("a.mtl", kMtl);
-  const std::string file = put("a.obj", kObj);  // two objects of three triangles
+  folder.write("a.mtl", kMtl);
+  const std::string file = folder.write("a.obj", kObj);  // two objects of three triangles
   EXPECT_TRUE(io::importAssimp(file, {.triangles = 3, .objects = 2}));
   EXPECT_NE(io::importAssimp(file, {.triangles = 2}).error().message.find("exceeds 2 triangles"),
             std::string::npos);
@@ -208,10 +202,10 @@ TEST_F(Files, WhatExceedsTheLimitsIsRefused) {
 
 // Assimp 5.2 aborts on this file, which must not be the end of the program that reads it.
 TEST_F(Files, WhatBringsAssimpDownIsOneError) {
-  const std::string file = put("a.off",
-                               "OFF\n4 2 0\n0 0 0-11 0 0\n0 1 0\n0 0 1\x7f"
-                               "3 0 1 2\x97"
-                               "3 ");
+  const std::string file = folder.write("a.off",
+                                        "OFF\n4 2 0\n0 0 0-11 0 0\n0 1 0\n0 0 1\x7f"
+                                        "3 0 1 2\x97"
+                                        "3 ");
   const Result<Scene> scene = importScene(file);
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().message.find(file + ": could not be read: "), 0u) << scene.error().message;

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -13,6 +11,7 @@
 
 #include "tests/io/glb_builder.h"
 #include "tests/io/scene_checks.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline {
 namespace {
@@ -354,20 +353,19 @@ TEST(GltfHostile, ContainersThatLieAreRefused) {
 class GltfFiles : public testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::temp_directory_path() / ("sightline_gltf_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder / "scene");
     written = oneTriangle();
     std::ofstream(folder / "scene" / "some data.bin", std::ios::binary) << written.binary;
     std::ofstream(folder / "secret.bin", std::ios::binary) << written.binary;
   }
-  void TearDown() override { std::filesystem::remove_all(folder); }
 
   Result<Scene> withUri(const std::string& uri) {
     written.json["buffers"][0]["uri"] = uri;
     return importGltf(written.json.dump(), (folder / "scene").string(), "scene.gltf");
   }
 
-  std::filesystem::path folder;
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary.path();
   Glb written;
 };
 

@@ -1,19 +1,15 @@
 #include "sightline/io/layer_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace sightline {
 namespace {
-
-std::string temporaryFile() {
-  return (std::filesystem::temp_directory_path() / ("sightline-layers-" + std::to_string(getpid()) + ".exr"))
-      .string();
-}
 
 FileLayer pixel(const std::string& name) {
   return {.name = name, .width = 1, .height = 1, .rgba = {1, 0, 0, 1}};
@@ -42,7 +38,8 @@ TEST(LayerFile, ALayerIsCroppedToWhatIsNotTransparent) {
 }
 
 TEST(LayerFile, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
-  const std::string file = temporaryFile();
+  const test::TemporaryFolder folder;
+  const std::string file = folder.file("a.exr");
   const auto refused = [&](std::uint32_t width, std::uint32_t height, const std::vector<FileLayer>& layers) {
     EXPECT_FALSE(writeLayerFile(file, width, height, layers, "{}"));
     EXPECT_FALSE(std::filesystem::exists(file));

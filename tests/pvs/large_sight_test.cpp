@@ -8,13 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "sightline/pvs/query/set_query.h"
 #include "tests/pvs/sight_checks.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline::sight_test {
 namespace {
@@ -26,10 +26,6 @@ constexpr std::uint64_t kHole = 2'300'000'000u;  // bytes; two of them are more 
 class LargeSight : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string folder = (std::filesystem::temp_directory_path() / "sightline-large-XXXXXX").string();
-    ASSERT_NE(mkdtemp(folder.data()), nullptr);
-    folder_ = folder;
-    name_ = folder + "/large.sight";
     pvs::EncodedChunks encoded = pvs::encodeChunks(baked_);
     ASSERT_GT(encoded.set_chunks, 3u);
     const std::vector<Chunk> small = encoded.chunks;
@@ -59,7 +55,6 @@ class LargeSight : public ::testing::Test {
     places_ = encoded.sets;
     ASSERT_GT(chunks_.back().offset, std::uint64_t{1} << 32);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void write(std::uint64_t offset, std::span<const std::byte> bytes) {
     const int file = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -84,8 +79,8 @@ class LargeSight : public ::testing::Test {
 
   BakedVisibility baked_ = made::visibility(
       {.objects = 3000, .leaves = 200, .sets = 200, .set_nodes = 80, .plane_every = 0, .database_bytes = {}});
-  std::filesystem::path folder_;
-  std::string name_;
+  const test::TemporaryFolder folder_;
+  const std::string name_ = folder_.file("large.sight");
   std::uint64_t structure_bytes_ = 0;
   std::vector<std::pair<std::uint64_t, Bytes>> pieces_;
   std::vector<Chunk> chunks_;

@@ -4,10 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "scenes/procedural.h"
@@ -16,30 +12,19 @@
 #include "tests/pvs/door_scenes.h"
 #include "tests/pvs/sight_checks.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline {
 namespace {
 
-namespace fs = std::filesystem;
-
 class WrittenParts : public ::testing::Test {
  protected:
-  WrittenParts() {
-    std::string name = (fs::temp_directory_path() / "sightline-parts-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    file_ = (folder_ / "a.sight").string();
-  }
-  ~WrittenParts() override { fs::remove_all(folder_); }
-
   sight_test::Bytes content() const {
-    std::ifstream stream(file_, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = test::contents(file_);
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
   }
-  std::size_t filesThere() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
+  std::size_t filesThere() const { return folder_.entries(); }
 
   // Bakes the scene and writes it part by part. Returns how many leaves of the file became one by merging.
   std::size_t expectTheSameBytes(const Scene& scene, const BakeSettings& settings) {
@@ -73,8 +58,8 @@ class WrittenParts : public ::testing::Test {
         std::count(reasons.begin(), reasons.end(), static_cast<std::uint8_t>(StopReason::kMerged)));
   }
 
-  fs::path folder_;
-  std::string file_;
+  const test::TemporaryFolder folder_;
+  const std::string file_ = folder_.file("a.sight");
 };
 
 // A tolerance of 0 merges hardly anything, one of 1 much, one of 1,000 all that have like planes. A part is

@@ -1,54 +1,22 @@
 #include "sightline/pvs/bake/write_sight.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "tests/pvs/sight_checks.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline::sight_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "sightline-write-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path_)) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string contentOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 using Names = std::vector<std::string>;
 
 TEST(WriteSight, WritesWhatCanBeOpened) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const BakedVisibility baked = made::visibility();
   ASSERT_EQ(errorOf(writeSight(folder.file("a.sight"), baked)), "");
   const Result<SightFile> file = SightFile::open(folder.file("a.sight"));
@@ -59,15 +27,15 @@ TEST(WriteSight, WritesWhatCanBeOpened) {
 }
 
 TEST(WriteSight, WritesTheSameBytesAgain) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
     ASSERT_EQ(errorOf(writeSight(folder.file(name), made::visibility())), "");
   }
-  EXPECT_EQ(contentOf(folder.file("a")), contentOf(folder.file("b")));
+  EXPECT_EQ(test::contents(folder.file("a")), test::contents(folder.file("b")));
 }
 
 TEST(WriteSight, ReplacesAFileThatSomebodyReads) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const std::string name = folder.file("a.sight");
   const BakedVisibility before = made::visibility({.seed = 1});
   const BakedVisibility after = made::visibility({.seed = 2, .objects = 77});
@@ -81,7 +49,7 @@ TEST(WriteSight, ReplacesAFileThatSomebodyReads) {
 }
 
 TEST(WriteSight, LeavesNothingInAFolderThatIsNotThere) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const std::string name = folder.file("none/a.sight");
   const std::string error = errorOf(writeSight(name, made::visibility()));
   EXPECT_NE(error.find(name), std::string::npos) << error;
@@ -91,7 +59,7 @@ TEST(WriteSight, LeavesNothingInAFolderThatIsNotThere) {
 
 // The target is a folder, so writing succeeds until the rename.
 TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   fs::create_directories(folder.file("a.sight/child"));
   const std::string error = errorOf(writeSight(folder.file("a.sight"), made::visibility()));
   EXPECT_NE(error.find("directory"), std::string::npos) << error;
@@ -99,10 +67,10 @@ TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
 }
 
 TEST(WriteSight, LeavesTheOldFileUntouchedWhenTheDiskIsFull) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const std::string name = folder.file("a.sight");
   ASSERT_EQ(errorOf(writeSight(name, made::visibility())), "");
-  const std::string before = contentOf(name);
+  const std::string before = test::contents(name);
 
   std::string error;
   {
@@ -110,12 +78,12 @@ TEST(WriteSight, LeavesTheOldFileUntouchedWhenTheDiskIsFull) {
     error = errorOf(writeSight(name, made::visibility({.seed = 5})));
   }
   EXPECT_NE(error.find("File too large"), std::string::npos) << error;
-  EXPECT_EQ(contentOf(name), before);
+  EXPECT_EQ(test::contents(name), before);
   EXPECT_EQ(folder.names(), Names{"a.sight"});
 }
 
 TEST(WriteSight, WritesNothingThatNoReaderWouldTake) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   using Damage = void (*)(BakedVisibility&);
   const std::vector<std::pair<const char*, Damage>> damages{
       {"no hierarchy", [](BakedVisibility& b) { b.boxes = {}; }},

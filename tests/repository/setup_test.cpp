@@ -2,17 +2,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/repository/source_tree.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sightline::repository {
 namespace {
@@ -23,22 +21,17 @@ class Machine {
  public:
   // dpkg_query: what that program does with its arguments, in bash.
   explicit Machine(const std::string& dpkg_query) {
-    std::string name = (fs::temp_directory_path() / "sightline-setup-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     write("dpkg-query", "printf '%s\\n' \"$*\" >> '" + file("queried") + "'\n" + dpkg_query);
     write("apt-get", "printf '%s\\n' \"$*\" >> '" + file("apt") + "'\n");
     // For whoever is not root: runs the command after its own options.
     write("sudo", "while [[ \"$1\" == -* ]]; do shift; done\nexec \"$@\"\n");
   }
-  ~Machine() { fs::remove_all(folder_); }
-  Machine(const Machine&) = delete;
-  Machine& operator=(const Machine&) = delete;
 
   // The exit code of scripts/setup.
   int setUp() const {
-    const std::string command = "env -u SIGHTLINE_NO_SETUP PATH='" + folder_.string() + "':\"$PATH\" '" +
-                                (sourceRoot() / "scripts/setup").string() + "' > '" + file("output") +
-                                "' 2>&1 < /dev/null";
+    const std::string command = "env -u SIGHTLINE_NO_SETUP PATH='" + folder_.path().string() +
+                                "':\"$PATH\" '" + (sourceRoot() / "scripts/setup").string() + "' > '" +
+                                file("output") + "' 2>&1 < /dev/null";
     const int status = pclose(popen(command.c_str(), "r"));
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -59,14 +52,10 @@ class Machine {
   }
 
  private:
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string read(const std::string& name) const {
-    std::ifstream stream(file(name));
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  std::string read(const std::string& name) const { return test::contents(file(name)); }
   void write(const std::string& name, const std::string& script) const {
-    std::ofstream(file(name)) << "#!/usr/bin/env bash\n" << script;
-    fs::permissions(file(name), fs::perms::owner_all);
+    fs::permissions(folder_.write(name, "#!/usr/bin/env bash\n" + script), fs::perms::owner_all);
   }
   // Words that are no options, nor parts of the query's format.
   static std::vector<std::string> packagesIn(const std::string& text) {
@@ -80,7 +69,7 @@ class Machine {
     return packages;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 const char* const kKnowsNone = "echo \"dpkg-query: no packages found matching $3\" >&2\nexit 1\n";
