@@ -175,7 +175,7 @@ inline Error unsoundArrays(const std::string& name, const std::string& flaw) {
 
 // Whether an array of this size has the items of a range.
 inline bool isRange(std::uint64_t first, std::uint64_t count, std::size_t size) {
-  return first + count <= size;
+  return first <= size && count <= size - first;
 }
 
 // Whether the memory of a bool in an item is 0 or 1: as a bool, nothing else may be looked at.

@@ -37,7 +37,7 @@ class SeveralBoxes {
   // Asks for the next box of each candidate that the frustum does not cull. A candidate that has none left is
   // hidden.
   void askForNextBoxes(const Frustum& frustum, std::span<const ObjectId> visible);
-  // Those of which the box is hidden stay candidates.
+  // Keeps as candidates the objects whose box was hidden, and remembers of the others which box was seen.
   void takeAnswers(std::span<const ObjectId> visible);
 
   const ObjectBoxes& boxes_;

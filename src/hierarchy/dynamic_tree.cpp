@@ -543,7 +543,7 @@ void DynamicTree::build(std::span<const Item> items) {
   while (!fill(all, 0)) {
     all = kNone;
   }
-  scratch_ = {};
+  scratch_.clear();
   steps_taken_ = 0;
 }
 

@@ -1,8 +1,9 @@
 #include "src/world/world_eye.h"
-#include "src/base/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "src/base/stopwatch.h"
 
 namespace sightline::world {
 

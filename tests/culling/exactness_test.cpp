@@ -14,23 +14,27 @@ namespace {
 using namespace demo_frames;
 
 // Takes a few consecutive frames at several places of each camera path, with a jump from place to place. At
-// every third place the views are orthographic.
+// every second place the views are orthographic.
 void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
   Judge judge(demo);
   places = test::rounds(places);
+  std::size_t hidden_orthographic = 0;
   for (const CameraPath& path : demo.scene.paths) {
     for (std::size_t place = 0; place < places; ++place) {
       const std::size_t first = path.frames.size() * place / places;
       std::size_t frame = first;
       for (View view : demo.frames(path, first, steady)) {
-        view.orthographic = place % 3 == 2;
+        view.orthographic = place % 2 == 1;
         view.ortho_height = 12.0;
+        const std::size_t hidden_before = judge.counts.hidden;
         judge.judge(view, "walk " + path.name + " frame " + std::to_string(frame++));
+        hidden_orthographic += view.orthographic ? judge.counts.hidden - hidden_before : 0;
       }
     }
   }
   EXPECT_GT(judge.counts.seen, test::rounds(100u));
   EXPECT_GT(judge.counts.hidden, test::rounds(100u));
+  EXPECT_GT(hidden_orthographic, 10u);
 }
 
 void judgeJumps(const DemoScene& demo, std::uint64_t seed, std::size_t count) {

@@ -20,24 +20,27 @@ struct NamedCuller {
   AnyCuller culler;
 };
 
-// Makes cullers with all structures and hierarchies, with and without temporal coherence; and cullers with
-// occluders from the database and the second test of detail objects. Structures without joint occlusion are
-// left out: they hide nothing that those with it do not hide (TwoForms), and those are judged.
+// Makes cullers with all structures and hierarchies, with and without temporal coherence, one of the two with
+// few occluders; and cullers with occluders from the database and the second test of detail objects. In a
+// single frame, structures without joint occlusion hide nothing that those with it do not hide (TwoForms), so
+// they are judged with coherence alone.
 inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   std::vector<NamedCuller> cullers;
   const auto add = [&](std::string name, HierarchyKind kind, const AnySettings& settings) {
-    name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent" : " incoherent");
+    name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent " : " incoherent ") +
+            std::to_string(settings.occluder_count) + " occluders";
     cullers.push_back({std::move(name), demo.culler(kind, settings)});
   };
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& structure : kStructures) {
       AnySettings settings = structure.settings;
-      if (!settings.supporting_planes.joint_occlusion || !settings.kept_planes.joint_occlusion) {
-        continue;
-      }
+      const bool joint = settings.supporting_planes.joint_occlusion && settings.kept_planes.joint_occlusion;
       for (const bool coherence : {true, false}) {
         settings.temporal_coherence = coherence;
-        add(structure.name, kind, settings);
+        settings.occluder_count = coherence == (kind == HierarchyKind::kBvh) ? 64 : 8;
+        if (coherence || joint) {
+          add(structure.name, kind, settings);
+        }
       }
     }
     for (const NamedSettings& method : kMethods) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline::layers {
@@ -90,10 +91,9 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
       }
       found += expected.size() - 1;
       for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
+        const test::ForcedInstructionSet forced(target);
         std::vector<std::uint32_t> parts{77};  // query() must append
         scan.query(query, parts);
-        hwy::SetSupportedTargetsForTest(0);
         EXPECT_EQ(parts, expected) << hwy::TargetName(target) << ", seed " << seed;
       }
     }
@@ -143,10 +143,9 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsThroughThreeLevels) {
       }
       found += expected.size();
       for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
+        const test::ForcedInstructionSet forced(target);
         std::vector<std::uint32_t> parts;
         scan.query(query, parts);
-        hwy::SetSupportedTargetsForTest(0);
         EXPECT_EQ(parts, expected) << hwy::TargetName(target) << ", seed " << seed;
       }
     }

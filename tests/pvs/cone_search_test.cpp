@@ -11,6 +11,7 @@
 #include <set>
 
 #include "tests/pvs/convex_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::pvs {
 namespace {
@@ -87,13 +88,12 @@ TEST(ConeSearch, LeavesOutNoBoxThatThePointsOfTheConeLieIn) {
     lanes.pad();
     const ConeTree tree(boxes, numbers);
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       EXPECT_EQ(placesMetOf(lanes, {&cone, 1}).size(), boxes.size()) << "seed " << seed;
       EXPECT_TRUE(std::ranges::is_permutation(numbersIn(tree, {&cone, 1}, boxes.size()), numbers))
           << "seed " << seed;
       std::vector<std::uint32_t> found;
       EXPECT_FALSE(tree.find({&cone, 1}, boxes.size() - 1, found));
-      hwy::SetSupportedTargetsForTest(0);
     }
   }
 }
@@ -128,9 +128,8 @@ TEST(ConeSearch, LeavesOutNoBoxThatALineFromBoxToBoxPasses) {
     passed.pad();
     others.pad();
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       EXPECT_EQ(placesMetOf(passed, {&lines, 1}).size(), passed.size()) << "seed " << seed;
-      hwy::SetSupportedTargetsForTest(0);
     }
     beside += others.size();
     left_out += others.size() - placesMetOf(others, {&lines, 1}).size();

@@ -8,6 +8,7 @@
 #include "src/pvs/bake/convex/shadow.h"
 #include "tests/pvs/bake_scenes.h"
 #include "tests/pvs/convex_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline::pvs {
 namespace {
@@ -283,7 +284,7 @@ TEST(ConvexSearch, FindsTheSameOnEveryInstructionSet) {
   none.reset(static_cast<std::uint32_t>(town.bake.boxes.objects.size()));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+    const test::ForcedInstructionSet forced(target);
     ConvexSearch search(town.bake);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
     for (const ConvexSearch::Found& by_one : search.hiddenFrom(corners, choice, none)) {
@@ -291,7 +292,6 @@ TEST(ConvexSearch, FindsTheSameOnEveryInstructionSet) {
     }
     expected = expected.empty() ? found : expected;
     EXPECT_EQ(found, expected) << hwy::TargetName(target);
-    hwy::SetSupportedTargetsForTest(0);
   }
   EXPECT_GT(expected.size(), 5u);
 }

@@ -15,6 +15,7 @@
 
 #include "oracle/region_proof.h"
 #include "tests/pvs/bake_scenes.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 
 namespace sightline::pvs {
@@ -535,9 +536,8 @@ TEST(Shaft, FindsTheSidesThatAPointIsBeyondOnEveryInstructionSet) {
     ASSERT_EQ(sides != 0, shaft.misses(point, point));
     (sides != 0 ? beyond : within) += 1;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const std::uint32_t same = shaft.sidesBeyond(point);
-      hwy::SetSupportedTargetsForTest(0);
       ASSERT_EQ(same, sides) << hwy::TargetName(target);
     }
   }

@@ -4,6 +4,7 @@
 #include <hwy/targets.h>
 
 #include "tests/pvs/convex_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace sightline {
 namespace {
@@ -263,10 +264,9 @@ TEST(ShadowTree, GivesTheSameRunsFromEveryInstructionSet) {
     shadow_tree.hiddenBy(shadow, first);
     run_count += first.size();
     for (const std::int64_t target : targets) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       std::vector<ObjectRun> runs;
       shadow_tree.hiddenBy(shadow, runs);
-      hwy::SetSupportedTargetsForTest(0);
       EXPECT_EQ(runs, first) << "seed " << seed << ", " << hwy::TargetName(target);
     }
   }

@@ -1,6 +1,7 @@
 // Crossings of sheets by lines of sight against whole numbers, with many ties, on every instruction set.
 
 #include "src/pvs/bake/surfaces/sheet_crossings.h"
+#include "tests/support/instruction_sets.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -77,10 +78,9 @@ TEST(SheetCrossings, AreThoseOfWholeNumbersOnEveryInstructionSet) {
     const Whole from = place(most), to = place(most);
     const SheetCrossings expected = exactly(sheets, from, to);
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       const SheetCrossings found =
           crossSheets(vertices, corners, {asVector(from), asVector(to), 0x1p-40}, 100.0);
-      hwy::SetSupportedTargetsForTest(0);
       ASSERT_EQ(found.sum, expected.sum) << hwy::TargetName(target) << ", question " << question;
       ASSERT_EQ(found.front, expected.front) << hwy::TargetName(target) << ", question " << question;
       ASSERT_EQ(found.in_doubt, expected.in_doubt) << hwy::TargetName(target) << ", question " << question;

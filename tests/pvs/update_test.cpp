@@ -20,6 +20,7 @@ using test::torn;
 
 struct Totals {
   std::uint64_t edits = 0, comparable = 0, questions = 0, asked = 0;
+  std::size_t most_parts = 0;  // of a bake
 };
 
 // Edits the scene so many times, one edit after the other. After each, the bake that takes over from the one
@@ -40,6 +41,7 @@ void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t s
     Answered made = bake.after(before.answers);
     ASSERT_TRUE(made.file == full.file) << what;
     ASSERT_EQ(made.parts, full.parts) << what;
+    totals.most_parts = std::max(totals.most_parts, full.parts.size());
     totals.edits += 1;
     if (made.taken.difference.empty()) {
       totals.comparable += 1;
@@ -83,6 +85,7 @@ TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
                editsOf(7), totals);
   }
   expectReuse(totals);
+  EXPECT_GT(totals.most_parts, 1u);
 }
 
 TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {

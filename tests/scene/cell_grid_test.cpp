@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 
 namespace sightline::scene {
@@ -185,7 +186,7 @@ TEST(CellGrid, EveryInstructionSetMarksTheSameCells) {
   std::vector<SlabMasks> first;
   std::size_t targets = 0;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+    const test::ForcedInstructionSet forced(target);
     const CellGrid grid(boundsOf(corners), corners);
     std::vector<SlabMasks> marked;
     for (std::uint32_t x = 0; x < kMaxSlabs; ++x) {
@@ -195,7 +196,6 @@ TEST(CellGrid, EveryInstructionSetMarksTheSameCells) {
     EXPECT_EQ(first, marked) << hwy::TargetName(target);
     ++targets;
   }
-  hwy::SetSupportedTargetsForTest(0);
   EXPECT_GE(targets, 1u);
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 
 namespace sightline::scene {
@@ -257,10 +258,9 @@ TEST(GridDivisions, EveryInstructionSetGivesTheSameTree) {
     const CellGrid grid = Cells(seed).grid();
     std::vector<DivisionTree> trees;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+      const test::ForcedInstructionSet forced(target);
       findDivisions(grid, {}, trees.emplace_back());
     }
-    hwy::SetSupportedTargetsForTest(0);
     ASSERT_FALSE(trees.empty());
     for (const DivisionTree& tree : trees) {
       ASSERT_EQ(tree.node_count, trees[0].node_count);

@@ -14,6 +14,7 @@
 #include "src/scene/like_objects.h"
 #include "tests/support/cut_off.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -341,10 +342,9 @@ TEST(ObjectBoxes, EveryInstructionSetGivesTheSame) {
   }
   std::vector<ObjectBoxes> found;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+    const test::ForcedInstructionSet forced(target);
     found.push_back(findObjectBoxes(shapes.scene.view()));
   }
-  hwy::SetSupportedTargetsForTest(0);
   for (const ObjectBoxes& other : found) {
     EXPECT_EQ(found[0].first, other.first);
     EXPECT_EQ(found[0].boxes, other.boxes);

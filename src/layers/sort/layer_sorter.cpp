@@ -106,7 +106,8 @@ struct LayerSorter::Impl {
   std::vector<PartSettings> part_settings;
   // One element per part; sorted: it has been in an update(); to_sort: it is in the order of this one.
   std::vector<std::uint8_t> enabled, moved, sorted, to_sort, removed;
-  // Numbers of removed parts, by how many hulls these have, in the order of removal: lists through next_free.
+  // Numbers of removed parts. Those with equally many hulls are a list, linked by next_free, the first
+  // removed first.
   struct FreeParts {
     std::uint32_t first = kNoPart, last = kNoPart;
   };

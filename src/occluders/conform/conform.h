@@ -77,7 +77,8 @@ struct ConformedMesh {
   std::uint32_t degenerate = 0;  // triangles without area, which are left out
   std::uint32_t untouched = 0;   // triangles passed on without a look at their contacts: see conform()
   std::uint32_t divided = 0;     // triangles of the input that have several pieces, or new vertices
-  std::uint32_t overfull = 0;    // triangles of these of which only the borders are divided: most_contacts
+  // Divided triangles of which only the borders are: see ConformSettings::most_contacts.
+  std::uint32_t overfull = 0;
   ContactCounts contacts;
 };
 

@@ -17,7 +17,8 @@ namespace sightline::pvs {
 
 class WitnessRecorder {
  public:
-  explicit WitnessRecorder(const BakeScene& scene) : scene_(scene) {}  // which must outlive this
+  // The scene must outlive the recorder.
+  explicit WitnessRecorder(const BakeScene& scene) : scene_(scene) {}
 
   // All that follows is about the cell of this number, and this part of it.
   void startCell(std::uint64_t number) { cell_ = number; }

@@ -1,5 +1,4 @@
 #include "tools/sightline/walk/walk_pictures.h"
-#include "tools/sightline/report/markup.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 
 #include "sightline/occlusion/rasteriser.h"
 #include "tools/sightline/report/depth_legend.h"
+#include "tools/sightline/report/markup.h"
 #include "tools/sightline/walk/coverage_picture.h"
 #include "tools/sightline/walk/walk_report.h"
 

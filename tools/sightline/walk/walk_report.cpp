@@ -1,5 +1,4 @@
 #include "tools/sightline/walk/walk_report.h"
-#include "tools/sightline/report/markup.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/methods/method_choice.h"
 #include "tools/sightline/methods/statistics.h"
+#include "tools/sightline/report/markup.h"
 
 namespace sightline::tool {
 namespace {
