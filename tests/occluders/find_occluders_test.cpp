@@ -694,7 +694,7 @@ TEST(MakeOccluders, NeverCoversMoreThanTheCallersPolygon) {
       }
     }
   }
-  EXPECT_GT(accepted, 2000);
+  EXPECT_GT(accepted, test::rounds(2000));
 }
 
 }  // namespace
