@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <queue>
@@ -228,8 +229,11 @@ void report(const std::string& name, const Options& options) {
 
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
+  if (options.scenes.empty()) {
+    std::puts("parts: nothing to do; name scenes: demo:ship, or files");
+  }
   for (const std::string& scene : options.scenes) {
     report(scene, options);
   }
-  return options.scenes.empty() ? 1 : 0;
+  return 0;
 }

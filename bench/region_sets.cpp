@@ -81,7 +81,7 @@ Options optionsOf(int argc, char** argv) {
       options.settings.divisions = whole;
     } else if (is("--boxes=")) {
       options.settings.object_boxes = whole;
-    } else {
+    } else if (!is("--benchmark_min_time")) {
       options.scenes.push_back(word);
     }
   }

@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
       joined = true;
     } else if (argument == "--movers" && i + 1 < argc) {
       mover_count = std::strtoul(argv[++i], nullptr, 10);
-    } else {
+    } else if (argument.rfind("--benchmark_min_time", 0) != 0) {
       scenes.emplace_back(argument);
     }
   }
