@@ -9,6 +9,7 @@
 
 #include "scenes/procedural.h"
 #include "tests/comparison/picture_scenes.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline {
 namespace {
@@ -28,13 +29,8 @@ struct CityModel {
   std::vector<Vec3d> walk;  // some frames' eyes
 
   CityModel() {
-    std::vector<Box> bounds;
-    std::vector<std::uint32_t> triangles;
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-      triangles.push_back(object.triangleCount());
-    }
-    hierarchy = buildHierarchy(bounds, triangles);
+    const test::ObjectArrays objects(scene);
+    hierarchy = buildHierarchy(objects.boxes, objects.triangles);
     for (std::size_t f = 0; f < scene.paths[0].frames.size(); f += 8) {
       walk.push_back(scene.paths[0].view(f, scene.origin).eye);
     }

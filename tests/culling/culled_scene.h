@@ -11,6 +11,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
 #include "sightline/scene/scene.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline {
 
@@ -22,12 +23,9 @@ struct CulledScene {
   SurfaceSet surfaces;
 
   explicit CulledScene(Scene made) : scene(std::move(made)) {
-    std::vector<std::uint32_t> triangles;
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-      triangles.push_back(object.triangleCount());
-    }
-    hierarchy = buildHierarchy(bounds, triangles);
+    test::ObjectArrays objects(scene);
+    bounds = std::move(objects.boxes);
+    hierarchy = buildHierarchy(bounds, objects.triangles);
     occluders = findOccluders(scene.view());
     surfaces = findSurfaces(scene.view());
   }

@@ -6,12 +6,14 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenes/procedural.h"
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/support/any_culler.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline::demo_frames {
 
@@ -74,13 +76,10 @@ struct DemoScene {
   OccluderSet occluders;
 
   explicit DemoScene(Scene source) : scene(std::move(source)) {
-    std::vector<std::uint32_t> triangles;
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-      triangles.push_back(object.triangleCount());
-    }
-    kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
-    bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
+    test::ObjectArrays objects(scene);
+    bounds = std::move(objects.boxes);
+    kd_tree = buildHierarchy(bounds, objects.triangles, {.kind = HierarchyKind::kKdTree});
+    bvh = buildHierarchy(bounds, objects.triangles, {.kind = HierarchyKind::kBvh});
     occluders = findOccluders(scene.view());
   }
   const OccluderDatabase& database() const {

@@ -10,6 +10,7 @@
 #include "scenes/procedural.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "tests/hierarchy/box_families.h"
+#include "tests/support/object_arrays.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -148,20 +149,6 @@ bool same(const BoxTree& a, const BoxTree& b) {
                     });
 }
 
-struct SceneBoxes {
-  std::vector<Box> boxes;
-  std::vector<std::uint32_t> triangles;
-};
-SceneBoxes boxesOfScene(const std::string& url) {
-  const Scene scene = makeDemoScene(url).value();
-  SceneBoxes result;
-  for (const Object& object : scene.objects) {
-    result.boxes.push_back(object.bounds);
-    result.triangles.push_back(object.triangleCount());
-  }
-  return result;
-}
-
 constexpr const char* kScenes[] = {"demo:city?copies=3", "demo:building",
                                    "demo:boxes?buildings=400&boxes=4000", "demo:ship"};
 
@@ -223,7 +210,7 @@ TEST(BoxTree, EveryFamilyOfBoxesKeepsWhatTheHeaderPromises) {
 
 TEST(BoxTree, HoldsTheDemoScenesAtACostNearThatOfASurfaceAreaHierarchy) {
   for (const char* url : kScenes) {
-    const SceneBoxes scene = boxesOfScene(url);
+    const test::ObjectArrays scene(makeDemoScene(url).value());
     const BoxTree tree = buildBoxTree(scene.boxes, scene.triangles);
     EXPECT_EQ(whatIsWrong(tree, scene.boxes, scene.triangles), "") << url;
     const double cost = costOf(tree);

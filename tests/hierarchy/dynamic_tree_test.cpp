@@ -86,6 +86,14 @@ class RandomBoxes {
     box.extend(at + Vec3f{number_(0.0f, size), number_(0.0f, size), number_(0.0f, size)});
     return box;
   }
+  // Items 0 to count - 1.
+  Boxes items(std::uint32_t count, float spread, float size) {
+    Boxes boxes;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      boxes[i] = next(spread, size);
+    }
+    return boxes;
+  }
   std::uint32_t below(std::uint32_t bound) { return static_cast<std::uint32_t>(engine_() % bound); }
 
  private:
@@ -171,10 +179,7 @@ TEST(DynamicTree, IsBuiltOfAnyNumberOfItems) {
 // Neither a list nor building anew gives back what was reserved: nodes stay where they are in memory.
 TEST(DynamicTree, KeepsTheMemoryThatWasReserved) {
   RandomBoxes random(4);
-  Boxes boxes;
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    boxes[i] = random.next(100.0f, 2.0f);
-  }
+  Boxes boxes = random.items(2000, 100.0f, 2.0f);
   DynamicTree tree;
   tree.reserve(8000);
   tree.insert(itemsOf(boxes));
@@ -493,10 +498,7 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
 // of all nodes follow it, and another tree that was asked for gets done.
 TEST(DynamicTree, ThatMovesMoreThanItsStepsAllowGetsAllWorkDone) {
   RandomBoxes random(9);
-  Boxes boxes;
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    boxes[i] = random.next(20.0f, 1.0f);
-  }
+  Boxes boxes = random.items(1000, 20.0f, 1.0f);
   DynamicTree tree;
   tree.build(itemsOf(boxes));
   const auto frames = [&](std::uint32_t most) {

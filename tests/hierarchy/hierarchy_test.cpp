@@ -9,6 +9,7 @@
 
 #include "scenes/procedural.h"
 #include "tests/hierarchy/box_families.h"
+#include "tests/support/object_arrays.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -308,15 +309,10 @@ TEST(Hierarchy, CountsAllTrianglesBelowANode) {
 
 TEST(Hierarchy, HoldsACity) {
   const Scene scene = makeCity({.copies = 3});
-  std::vector<Box> boxes;
-  std::vector<std::uint32_t> triangles;
-  for (const Object& object : scene.objects) {
-    boxes.push_back(object.bounds);
-    triangles.push_back(object.triangleCount());
-  }
+  const test::ObjectArrays objects(scene);
   for (const HierarchyKind kind : kKinds) {
-    const Hierarchy hierarchy = buildHierarchy(boxes, triangles, {.kind = kind});
-    EXPECT_EQ(whatIsWrong(hierarchy, boxes, triangles), "") << nameOf(kind);
+    const Hierarchy hierarchy = buildHierarchy(objects.boxes, objects.triangles, {.kind = kind});
+    EXPECT_EQ(whatIsWrong(hierarchy, objects.boxes, objects.triangles), "") << nameOf(kind);
   }
 }
 

@@ -128,6 +128,7 @@ TEST_F(LargeSight, IsMappedSoThatNobodyCanWriteToIt) {
   ASSERT_TRUE(file) << errorOf(file);
   std::ifstream maps("/proc/self/maps");
   if (!maps) {
+    // Only Linux has this file. The call that maps is the same everywhere.
     GTEST_SKIP() << "the system does not tell what is mapped";
   }
   std::size_t mapped = 0;

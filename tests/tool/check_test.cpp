@@ -21,7 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-// Of the ship, single occluders hide much, and of the city, which is small, surfaces.
+// Single occluders hide much of this ship. Where surfaces have to hide something, the tests bake a small
+// city.
 const std::string kCheckShip = "demo:ship?decks=3&rooms=4&machinery=0";
 
 // Bakes and checks in a folder of its own.

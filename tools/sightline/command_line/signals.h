@@ -13,6 +13,7 @@ void endWhenTold(const std::string& command);
 // Sets the text about what is kept. Until this is called it names the files of noteWritten(), or says that
 // nothing was written.
 void keepWhenTold(const std::string& kept);
+// Adds a file to those that the text names. For one thread at a time, until keepWhenTold() is called.
 void noteWritten(const std::string& file);
 void removeWhenTold(const std::string& folder);
 
