@@ -13,6 +13,7 @@
 #include "src/culling/object_bits.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -242,9 +243,10 @@ TEST(Culler, KeepsNoMoreWithMoreOccluders) {
       }
     }
   };
-  expectNoMore(city(), "city", 25);
+  const std::size_t step = test::sanitized() ? 100 : 25;
+  expectNoMore(city(), "city", step);
   static const DemoScene kBuilding(makeBuilding({.floors = 4}));
-  expectNoMore(kBuilding, "building", 25);
+  expectNoMore(kBuilding, "building", step);
 }
 
 TEST(Culler, TheModifiedTreeKeepsAsLittleAsTheStandardOne) {

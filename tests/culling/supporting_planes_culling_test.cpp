@@ -14,6 +14,7 @@
 
 #include "tests/culling/ray_judge.h"
 #include "tests/occlusion/small_scenes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -359,7 +360,8 @@ TEST(KeptRelationsOfARow, AreNeitherMadeNorKeptForPlanesThroughTheEye) {
 std::vector<View> places(const DemoScene& demo, std::size_t step) {
   std::vector<View> views = jumps(demo, 34, 20);
   const CameraPath& path = demo.scene.paths[0];
-  for (std::size_t f = 0; f < path.frames.size(); f += step) {
+  const std::size_t frames = test::rounds(path.frames.size());
+  for (std::size_t f = 0; f < frames; f += step) {
     views.push_back(path.view(f, demo.scene.origin));
   }
   return views;
@@ -467,7 +469,7 @@ TEST_P(DetailObjects, ShrinkTheAnswerByThoseThatTheSecondTestHides) {
       settings.detail_objects = true;
       AnyCuller with = demo().culler(kind, settings);
       std::size_t culled = 0;
-      for (const View& view : walk(100, 60)) {
+      for (const View& view : walk(100, test::rounds(60u))) {
         without.cull(view);
         with.cull(view);
         const CullStats& stats = with.stats();

@@ -19,6 +19,7 @@
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/oracle/hand_made.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -980,7 +981,7 @@ class RandomSurfaces : public testing::TestWithParam<bool> {};
 
 TEST_P(RandomSurfaces, HideWhatTheyCover) {
   Checked all;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(40u); ++seed) {
     std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
     const auto number = test::numbersFrom<double>(engine);
     const float rough = static_cast<float>(number(0.0, 4.0));
@@ -1003,12 +1004,12 @@ TEST_P(RandomSurfaces, HideWhatTheyCover) {
     EXPECT_EQ(checked.wrong + checked.undecided, 0u) << "seed " << seed;
     all.covered += checked.covered;
   }
-  EXPECT_GT(all.covered, 4000u);
+  EXPECT_GT(all.covered, test::rounds(4000u));
 }
 
 TEST_P(RandomSurfaces, HideWhatTheyCoverWhereOnlySomeAreDrawn) {
   std::size_t covered = 0, useful = 0, fewer = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(40u); ++seed) {
     std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
     const auto number = test::numbersFrom<double>(engine);
     const auto rough = static_cast<float>(number(0.0, 4.0));
@@ -1060,9 +1061,9 @@ TEST_P(RandomSurfaces, HideWhatTheyCoverWhereOnlySomeAreDrawn) {
     EXPECT_TRUE(checked.right()) << "seed " << seed;
     covered += checked.covered;
   }
-  EXPECT_GT(covered, 2000u);
-  EXPECT_GT(useful, 20u);
-  EXPECT_GT(fewer, 20u);
+  EXPECT_GT(covered, test::rounds(2000u));
+  EXPECT_GT(useful, test::rounds(20u));
+  EXPECT_GT(fewer, test::rounds(20u));
 }
 
 // A rotation and a translation.
@@ -1096,7 +1097,7 @@ View movedBack(const View& view, const Mat4& m) {
 TEST_P(RandomSurfaces, HideWhatTheyCoverWhereverTheyAreMoved) {
   std::size_t covered = 0;
   Rasteriser raster({.width = 24, .height = 24});
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(30u); ++seed) {
     std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
     const auto number = test::numbersFrom<double>(engine);
     const auto anywhere = [&](double size) {
@@ -1118,7 +1119,7 @@ TEST_P(RandomSurfaces, HideWhatTheyCoverWhereverTheyAreMoved) {
     EXPECT_TRUE(checked.right()) << "seed " << seed;
     covered += checked.covered;
   }
-  EXPECT_GT(covered, 3000u);
+  EXPECT_GT(covered, test::rounds(3000u));
 }
 
 // The scene with each point where the matrix takes it, and the fronts of triangles still fronts. Exact if all
@@ -1137,7 +1138,7 @@ Scene transformed(Scene scene, const Mat4& m) {
 TEST_P(RandomSurfaces, HideWhatTheyCoverHoweverTheyAreStretchedAndMirrored) {
   std::size_t covered = 0, of_the_transformed = 0, mirrored = 0;
   Rasteriser raster({.width = 24, .height = 24});
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(40u); ++seed) {
     std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
     const auto number = test::numbersFrom<double>(engine);
     // Numbers of few binary digits, so that transformed points are exact in single precision.
@@ -1181,8 +1182,8 @@ TEST_P(RandomSurfaces, HideWhatTheyCoverHoweverTheyAreStretchedAndMirrored) {
     covered += checked.covered;
     of_the_transformed += check(world, view, 24, 24, {.part_triangles = 30}).covered;
   }
-  EXPECT_GT(mirrored, 10u);
-  EXPECT_GT(covered, 3000u);
+  EXPECT_GT(mirrored, test::rounds(10u));
+  EXPECT_GT(covered, test::rounds(3000u));
   EXPECT_GT(static_cast<double>(covered), 0.9 * static_cast<double>(of_the_transformed));
 }
 

@@ -12,6 +12,7 @@
 #include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::layers {
 
@@ -264,7 +265,7 @@ Points touchingPlane(Random& random, double sign, const Vec3d& stretch, bool sha
 TEST(ConvexPair, SetsAreFoundDisjointAtADistanceOfATenBillionthOfTheirSize) {
   const std::array<Vec3d, 4> stretches{{{1, 1, 1}, {1, 1e-3, 1e-3}, {1, 1, 1e-3}, {1e-3, 1e-3, 1}}};
   int asked = 0;
-  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(4000u); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const Vec3d stretch = stretches[random.below(4)];
@@ -285,7 +286,7 @@ TEST(ConvexPair, SetsAreFoundDisjointAtADistanceOfATenBillionthOfTheirSize) {
       ++asked;
     }
   }
-  EXPECT_GT(asked, 3500);
+  EXPECT_GT(asked, test::rounds(3500));
 }
 
 TEST(ConvexPair, DeepOverlapIsFoundToIntersectNotLeftUndecided) {

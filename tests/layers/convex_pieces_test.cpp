@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/layers/made_parts.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -176,7 +177,7 @@ std::optional<double> hitOf(const Vec3d& from, const Vec3d& direction, const Vec
 
 TEST(ConvexPieces, RaysThroughTheMeshesFindNoOcclusionThatTheOrderLacks) {
   std::size_t pairs = 0, groups = 0, groups_of_one_hull = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(6u); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     LayerSorter sorter({.arcs = LayerArcs::kAll}), coarse;
@@ -221,7 +222,7 @@ TEST(ConvexPieces, RaysThroughTheMeshesFindNoOcclusionThatTheOrderLacks) {
       }
     }
   }
-  EXPECT_GT(pairs, 1000u);
+  EXPECT_GT(pairs, test::rounds(1000u));
   EXPECT_GT(groups, groups_of_one_hull);
 }
 

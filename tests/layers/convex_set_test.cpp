@@ -10,6 +10,7 @@
 #include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::layers {
 namespace {
@@ -64,7 +65,7 @@ ConvexSet randomSet(Random& random, const ConvexHull& hull, double scale, double
 }
 
 TEST(ConvexSet, NoPointIsHigherThanItReachesAndTheBoundIsTight) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(200u); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const shapes::Points points =

@@ -8,6 +8,7 @@
 
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::layers {
 namespace {
@@ -69,9 +70,10 @@ Points randomBoxAt(Random& random, const Vec3d& middle) {
 
 // The envelope of a box is hardly larger than the box, so of those that are apart few are missed.
 TEST(EnvelopePair, BoxesThatAreApartAreFoundApartInAFewTries) {
+  const std::uint64_t pairs = test::rounds(1500u);
   std::size_t apart = 0, found = 0;
   std::uint64_t tries = 0;
-  for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+  for (std::uint64_t seed = 1; seed <= pairs; ++seed) {
     Random random(seed);
     const Kind kind = std::array{Kind::kHull, Kind::kWithEye, Kind::kSwept}[seed % 3];
     const Whole first(randomBoxAt(random, {}));
@@ -88,10 +90,10 @@ TEST(EnvelopePair, BoxesThatAreApartAreFoundApartInAFewTries) {
     apart += intersect ? 0 : 1;
     found += is_found ? 1 : 0;
   }
-  EXPECT_GT(apart, 300u);
-  EXPECT_LT(apart, 1200u);
+  EXPECT_GT(apart, pairs / 5);
+  EXPECT_LT(apart, pairs * 4 / 5);
   EXPECT_GT(found, apart * 95 / 100);
-  EXPECT_LE(tries, 1500u * 8u);
+  EXPECT_LE(tries, pairs * 8);
 }
 
 TEST(EnvelopePair, NothingThatTouchesIsFoundApart) {

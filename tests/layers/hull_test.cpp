@@ -15,6 +15,7 @@
 #include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -252,7 +253,7 @@ TEST(Hull, APolygonsNeighboursGoRoundItsOutline) {
 }
 
 TEST(Hull, FlatUpToRoundingIsFlatWithItsThicknessInTheSlack) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(50u); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const shapes::Axes axes = shapes::randomAxes(random);

@@ -9,6 +9,7 @@
 
 #include "tests/support/instruction_sets.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -129,7 +130,7 @@ DepthBound randomBound(test::Random& random) {
 TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
   test::Random random(3);
   std::size_t needed = 0, not_needed = 0, sloping_needed = 0, sloping_not_needed = 0;
-  for (int n = 0; n < 4000; ++n) {
+  for (int n = 0; n < test::rounds(4000); ++n) {
     NeedBed bed(random);
     for (int k = 0; k < 5; ++k) {
       const PixelRectangle rectangle = bed.randomRectangle(random), changed = bed.randomRectangle(random);
@@ -152,10 +153,10 @@ TEST(NeedMap, NeedsWhatIsBeforeABoxWhereItIsNotHidden) {
       (of_sloping > 0 ? sloping_needed : sloping_not_needed) += 1;
     }
   }
-  EXPECT_GT(needed, 2000u);
-  EXPECT_GT(not_needed, 2000u);
-  EXPECT_GT(sloping_needed, 2000u);
-  EXPECT_GT(sloping_not_needed, 2000u);
+  EXPECT_GT(needed, test::rounds(2000u));
+  EXPECT_GT(not_needed, test::rounds(2000u));
+  EXPECT_GT(sloping_needed, test::rounds(2000u));
+  EXPECT_GT(sloping_not_needed, test::rounds(2000u));
 }
 
 TEST(NeedMap, ABoxIsNotHiddenByWhatIsBehindItOrBesideIt) {

@@ -11,6 +11,7 @@
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/small_scenes.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -141,8 +142,8 @@ TEST(RasteriserBits, AreTheSameWithEveryInstructionSet) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   ASSERT_GE(targets.size(), 2u);
   std::size_t covered = 0;
-  forEachScene(60, [&](const View& view, const std::vector<OraclePolygon>& polygons,
-                       const RasterSettings& settings, const std::string& what) {
+  forEachScene(test::rounds(60), [&](const View& view, const std::vector<OraclePolygon>& polygons,
+                                     const RasterSettings& settings, const std::string& what) {
     const OccluderSet set = setOf(polygons);
     const Look first = drawn(view, set, all(set), settings);
     for (const std::uint32_t bits : first.bits) {
@@ -154,7 +155,7 @@ TEST(RasteriserBits, AreTheSameWithEveryInstructionSet) {
       expectSame(first, other, what + ", " + hwy::TargetName(target));
     }
   });
-  EXPECT_GT(covered, 500'000u);
+  EXPECT_GT(covered, test::rounds(500'000u));
 }
 
 TEST(RasteriserBits, AreTheSameHoweverTheWorkIsCut) {

@@ -10,6 +10,7 @@
 #include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/exact_coverage.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -247,7 +248,7 @@ exact::Surface within(const exact::Surface& all, const exact::Part& pixel) {
 
 TEST(SurfacesExact, CoverOnlyPixelsOfWhichEveryPointIsHidden) {
   std::size_t covered = 0, across = 0, failures = 0;
-  for (std::uint64_t seed = 0; seed < 3000 && failures < 5; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(3000u) && failures < 5; ++seed) {
     const SurfaceCase made = randomCase(seed);
     const exact::Surface all = allImages(made);
     const DrawnCase drawn(made, seed, false);
@@ -270,8 +271,8 @@ TEST(SurfacesExact, CoverOnlyPixelsOfWhichEveryPointIsHidden) {
       }
     }
   }
-  EXPECT_GT(covered, 50'000u);
-  EXPECT_GT(across, 10'000u);  // hidden by several triangles together
+  EXPECT_GT(covered, test::rounds(50'000u));
+  EXPECT_GT(across, test::rounds(10'000u));  // hidden by several triangles together
 }
 
 // A rectangle of small triangles leaves no pixel open that lies inside it, whatever its edges coincide with.

@@ -14,6 +14,7 @@
 
 #include "tests/support/instruction_sets.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::occlusion {
 namespace {
@@ -107,7 +108,7 @@ TEST(WindingMap, HasTheSameBitsWithEveryInstructionSetAtTheGreatestWidth) {
   std::mt19937 random(7);
   PolygonCover cover;
   std::size_t covered = 0;
-  for (int n = 0; n < 1500; ++n) {
+  for (int n = 0; n < test::rounds(1500); ++n) {
     const std::vector<GridPoint> quad = farQuad(random);
     std::vector<float> first;
     for (const std::int64_t target : targets) {
@@ -120,7 +121,7 @@ TEST(WindingMap, HasTheSameBitsWithEveryInstructionSetAtTheGreatestWidth) {
       EXPECT_TRUE(std::ranges::equal(first, values)) << "quad " << n << ", " << hwy::TargetName(target);
     }
   }
-  EXPECT_GT(covered, 1'000'000u);
+  EXPECT_GT(covered, test::rounds(1'000'000u));
 }
 
 TEST(WindingMap, CoversOnlyPixelsInsideAFarQuadAndMostOfThem) {

@@ -8,6 +8,7 @@
 #include "oracle/exact_visibility.h"
 #include "tests/oracle/hand_made.h"
 #include "tests/support/exact_sight.h"
+#include "tests/support/rounds.h"
 
 namespace sightline {
 namespace {
@@ -71,7 +72,7 @@ void scale(Scene& scene, float factor) {
 
 TEST(HardProof, AScaleByAPowerOfTwoChangesNoVerdict) {
   for (const bool orthographic : {false, true}) {
-    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    for (std::uint32_t seed = 0; seed < test::rounds(60u); ++seed) {
       std::mt19937 random(seed);
       const Scene scene = wallsAndTriangles(random);
       View view = frontView();
@@ -95,7 +96,7 @@ TEST(HardProof, AScaleByAPowerOfTwoChangesNoVerdict) {
 // Coordinates that are not multiples of a common large power of two, as those of real scenes.
 TEST(HardProof, SaysWhatBruteForceSaysOfRoundedCoordinates) {
   for (const float factor : {1e6f / 3.0f, 1e-4f / 3.0f, 1e-30f / 3.0f, 1e30f / 3.0f}) {
-    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    for (std::uint32_t seed = 0; seed < test::rounds(60u); ++seed) {
       std::mt19937 random(seed);
       Scene scene = wallsAndTriangles(random);
       scale(scene, factor);
@@ -146,7 +147,7 @@ TEST(HardProof, ASlitOfOneUlpShowsAndNoSlitHides) {
 
 TEST(HardProof, TooFewStepsLeaveAnObjectUndecidedButNeverWrong) {
   std::size_t undecided = 0, decided = 0;
-  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(200u); ++seed) {
     std::mt19937 random(seed);
     const Scene scene = wallsAndTriangles(random);
     const View view = frontView();
@@ -160,8 +161,8 @@ TEST(HardProof, TooFewStepsLeaveAnObjectUndecidedButNeverWrong) {
       }
     }
   }
-  EXPECT_GT(undecided, 1000u);
-  EXPECT_GT(decided, 1000u);
+  EXPECT_GT(undecided, test::rounds(1000u));
+  EXPECT_GT(decided, test::rounds(1000u));
 }
 
 void threeThreads(std::uint32_t count, const RangeBody& body) {

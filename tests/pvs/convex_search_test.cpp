@@ -9,6 +9,7 @@
 #include "tests/pvs/bake_scenes.h"
 #include "tests/pvs/convex_scenes.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/rounds.h"
 
 namespace sightline::pvs {
 namespace {
@@ -101,7 +102,7 @@ CellBox cellAround(const Vec3d& middle, double half) {
 
 TEST(ConvexSearch, FindsWhatAskingAllOccludersFinds) {
   std::size_t hidden_count = 0, seen_count = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(60u); ++seed) {
     const Town town(seed);
     const BakeScene& bake = town.bake;
     const auto count = static_cast<std::uint32_t>(bake.boxes.objects.size());
@@ -144,8 +145,8 @@ TEST(ConvexSearch, FindsWhatAskingAllOccludersFinds) {
       }
     }
   }
-  EXPECT_GT(hidden_count, 3000u);
-  EXPECT_GT(seen_count, 3000u);
+  EXPECT_GT(hidden_count, test::rounds(3000u));
+  EXPECT_GT(seen_count, test::rounds(3000u));
 }
 
 // A random part of the box.
@@ -172,7 +173,7 @@ ObjectMask maskOf(const std::vector<bool>& objects) {
 // Half of the towns have one-sided walls in place of solids, some of which look away from the cell.
 TEST(ConvexSearch, FindsTheSameByListsOfCellsAround) {
   std::size_t hidden_count = 0, seen_count = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::rounds(60u); ++seed) {
     const Town town(seed, seed % 2 == 0);
     const BakeScene& bake = town.bake;
     ConvexSearch search(bake);
@@ -224,8 +225,8 @@ TEST(ConvexSearch, FindsTheSameByListsOfCellsAround) {
       }
     }
   }
-  EXPECT_GT(hidden_count, 2000u);
-  EXPECT_GT(seen_count, 2000u);
+  EXPECT_GT(hidden_count, test::rounds(2000u));
+  EXPECT_GT(seen_count, test::rounds(2000u));
 }
 
 TEST(CellCandidates, AreRefusedWhereTheyWouldBeTooLong) {

@@ -367,8 +367,10 @@ TEST(Bake, RefusesOptionsOfViewersThatDoNotGoTogether) {
 
 TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls);
+  const std::string other = folder.write("other.obj", kWalls + "f 5 7 6\n");
   const std::string file = folder.file("F.sight"), parts = file + ".parts";
-  const Outcome first = runTool(bakeArguments(kShip, file, {"--json", "-", "--resume"}));
+  const Outcome first = runTool(bakeArguments(scene, file, {"--json", "-", "--resume"}));
   ASSERT_EQ(first.code, 0) << first.err;
   const std::string expected = contents(file);
   const json report = parse(first.out);
@@ -382,10 +384,10 @@ TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   };
   leave(planOf(report), true);
   const std::string left = contents(parts);
-  expectRefused(bakeArguments(kShip, file), "--resume");
-  expectRefused(bakeArguments(kShip, file, {"--resume", "--near-distance", "0.3"}), "--restart");
-  expectRefused(bakeArguments(kShip, file, {"--resume", "--triangle-budget", "99"}), "--restart");
-  expectRefused(bakeArguments("demo:ship?decks=3&rooms=5&machinery=0", file, {"--resume"}), "--restart");
+  expectRefused(bakeArguments(scene, file), "--resume");
+  expectRefused(bakeArguments(scene, file, {"--resume", "--near-distance", "0.3"}), "--restart");
+  expectRefused(bakeArguments(scene, file, {"--resume", "--triangle-budget", "99"}), "--restart");
+  expectRefused(bakeArguments(other, file, {"--resume"}), "--restart");
   EXPECT_EQ(contents(parts), left) << "a refused bake leaves the checkpoint as it is";
   EXPECT_TRUE(contents(file) == expected) << "and the old file";
   // What had finished nothing yet is in nobody's way.
@@ -395,15 +397,15 @@ TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
     if (*option != 0) {
       options.emplace_back(option);
     }
-    EXPECT_EQ(runTool(bakeArguments(kShip, file, options)).code, 0) << option;
+    EXPECT_EQ(runTool(bakeArguments(scene, file, options)).code, 0) << option;
   }
   EXPECT_FALSE(std::filesystem::exists(parts));
   leave(planOf(report) + 1);
-  EXPECT_EQ(runTool(bakeArguments(kShip, file, {"--restart"})).code, 0);
+  EXPECT_EQ(runTool(bakeArguments(scene, file, {"--restart"})).code, 0);
   EXPECT_TRUE(contents(file) == expected);
-  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(folder.entries(), 3u) << "the scenes and the file";
   folder.write("F.sight.parts", "not a checkpoint");
-  expectRefused(bakeArguments(kShip, file, {"--resume"}), "F.sight.parts");
+  expectRefused(bakeArguments(scene, file, {"--resume"}), "F.sight.parts");
 }
 
 TEST(Bake, RefusesOutputsThatCannotBe) {
