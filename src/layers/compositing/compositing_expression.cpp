@@ -1,5 +1,4 @@
-// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, expressions 3 and 4. Tarjan. Depth-first search and
-// linear graph algorithms. SIAM J. Comput. 1972.
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, expressions 3 and 4.
 // Differs from the paper in: expression 4 uses expression 3 for the occluders of the layer that is taken out,
 // so that it does not grow without bound; the rest is divided into cycles again, most of which are single
 // layers.
@@ -52,8 +51,7 @@ void ExpressionPlanner::beginFrame(const LayerOccluders& occluders) {
   occluders_ = &occluders;
   const std::size_t layers = occluders.layers();
   place_of_.assign(layers, kNone);
-  number_.resize(layers);
-  low_.resize(layers);
+  components_.setNodeCount(layers);
   occluded_.resize(layers);
 }
 
@@ -107,20 +105,21 @@ void ExpressionPlanner::setOrder(std::span<const std::uint32_t> layers, std::uin
 }
 
 // Divides a range of the order into its strongly connected components, front to back, and makes them pending.
-// Each gets the range's limit minus one operation for each layer of the others.
+// Each gets the range's limit minus one operation for each layer of the others. The search goes from a layer
+// to its occluders, so that a component is found after all components that occlude it.
 void ExpressionPlanner::pushCycles(const ExpressionNode& range, std::uint32_t parent) {
-  const std::uint32_t begin = range.begin, end = range.end;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    number_[order_[i]] = 0;
-  }
-  seen_ = 0;
+  const std::uint32_t begin = range.begin;
   found_.clear();
   ends_.clear();
-  for (std::uint32_t i = begin; i < end; ++i) {
-    if (number_[order_[i]] == 0) {
-      findCyclesFrom(order_[i], range);
-    }
-  }
+  components_.find(
+      std::span(order_).subspan(begin, range.size()),
+      [&](std::uint32_t layer) { return contains(range, layer); },
+      [this](std::uint32_t layer) { return occluders_->of(layer); },
+      [this](std::span<const std::uint32_t> cycle) {
+        const auto first = found_.insert(found_.end(), cycle.begin(), cycle.end());
+        std::sort(first, found_.end());
+        ends_.push_back(static_cast<std::uint32_t>(found_.size()));
+      });
   setOrder(found_, begin);
   for (std::size_t i = ends_.size(); i-- > 0;) {
     const std::uint32_t from = i == 0 ? 0 : ends_[i - 1];
@@ -129,55 +128,6 @@ void ExpressionPlanner::pushCycles(const ExpressionNode& range, std::uint32_t pa
     node.limit = range.limit == kNoLimit ? kNoLimit : range.limit - others;
     pending_.push_back(node);
   }
-}
-
-// Tarjan's search, from a layer to its occluders, so that a component is found after all components that
-// occlude it.
-void ExpressionPlanner::findCyclesFrom(std::uint32_t root, const ExpressionNode& range) {
-  enter(root);
-  while (!visits_.empty()) {
-    Visit& visit = visits_.back();
-    const std::uint32_t layer = visit.layer;
-    if (visit.next == occluders_->first[layer + 1]) {
-      visits_.pop_back();
-      leave(layer);
-      continue;
-    }
-    const std::uint32_t occluder = occluders_->occluders[visit.next++];
-    if (!contains(range, occluder)) {
-      continue;
-    }
-    if (number_[occluder] == 0) {
-      enter(occluder);
-    } else if (number_[occluder] != kNone) {
-      low_[layer] = std::min(low_[layer], number_[occluder]);
-    }
-  }
-}
-
-void ExpressionPlanner::enter(std::uint32_t layer) {
-  number_[layer] = low_[layer] = ++seen_;
-  open_.push_back(layer);
-  visits_.push_back({layer, occluders_->first[layer]});
-}
-
-void ExpressionPlanner::leave(std::uint32_t layer) {
-  if (!visits_.empty()) {
-    std::uint32_t& low = low_[visits_.back().layer];
-    low = std::min(low, low_[layer]);
-  }
-  if (low_[layer] != number_[layer]) {
-    return;
-  }
-  auto first = open_.end();
-  do {
-    --first;
-    number_[*first] = kNone;
-  } while (*first != layer);
-  std::sort(first, open_.end());
-  found_.insert(found_.end(), first, open_.end());
-  open_.erase(first, open_.end());
-  ends_.push_back(static_cast<std::uint32_t>(found_.size()));
 }
 
 void ExpressionPlanner::count(ExpressionNode& node) {

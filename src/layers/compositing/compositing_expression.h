@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/layers/compositing.h"
+#include "src/base/strong_components.h"
 
 namespace sightline::layers {
 
@@ -62,16 +63,10 @@ class ExpressionPlanner {
     std::uint64_t operations = 0, steps = 0;
     friend auto operator<=>(const Cost&, const Cost&) = default;
   };
-  struct Visit {
-    std::uint32_t layer = 0, next = 0;
-  };
 
   void setOrder(std::span<const std::uint32_t> layers, std::uint32_t begin);
   void pushCycles(const ExpressionNode& range, std::uint32_t parent);
   void divide(ExpressionNode& node, std::uint32_t index, CompositingForm form);
-  void findCyclesFrom(std::uint32_t root, const ExpressionNode& range);
-  void enter(std::uint32_t layer);
-  void leave(std::uint32_t layer);
   void count(ExpressionNode& node);
   void takeOneOut(ExpressionNode& node);
   void choose(CompositingForm form);
@@ -83,12 +78,8 @@ class ExpressionPlanner {
   std::vector<ExpressionNode> pending_;  // components yet to become nodes, the next one last
   std::vector<std::uint32_t> occluded_;  // one per layer: how many layers of the node it occludes
   std::vector<Cost> below_;              // one per node: the cost of its children
-  // Scratch for Tarjan's search. One per layer; 0: not visited, kNone: done.
-  std::vector<std::uint32_t> number_, low_;
-  std::vector<std::uint32_t> open_;
-  std::vector<Visit> visits_;
+  base::StrongComponents components_;
   std::vector<std::uint32_t> found_, ends_;  // the components' layers, and where each component ends
-  std::uint32_t seen_ = 0;
 };
 
 }  // namespace sightline::layers

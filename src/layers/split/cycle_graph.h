@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "src/base/strong_components.h"
+
 namespace sightline::layers {
 
 class CycleGraph {
@@ -40,21 +42,12 @@ class CycleGraph {
   const std::vector<std::vector<std::uint32_t>>& cycles() const { return cycles_; }
 
  private:
-  struct Visit {
-    std::uint32_t node = 0;
-    std::size_t next = 0;  // the next of its arcs
-  };
-  void visit(std::uint32_t start);
-  void enter(std::uint32_t node);
-  void leave(std::uint32_t node);
-
   std::vector<Node> nodes_;
   std::vector<std::vector<std::uint32_t>> cycles_;
-  // Tarjan's algorithm. Numbers begin at 1; 0: not visited, or not among those that count.
-  std::vector<std::uint8_t> counts_, on_stack_;
-  std::vector<std::uint32_t> number_, low_, stack_, all_;
-  std::vector<Visit> path_;
-  std::uint32_t last_number_ = 0;
+  // Scratch of score(): whether a node counts, one per node, and all that do.
+  std::vector<std::uint8_t> counts_;
+  std::vector<std::uint32_t> all_;
+  base::StrongComponents components_;
 };
 
 }  // namespace sightline::layers
