@@ -7,6 +7,7 @@
 // no point of the mesh is left out, however thin it is.
 
 #include "sightline/layers/convex_pieces.h"
+#include "src/geometry/clip_convex.h"
 #include "src/math/longest_axis.h"
 
 #include <algorithm>
@@ -70,34 +71,21 @@ Result<Piece> pieceOf(std::vector<Polygon> polygons) {
   return piece;
 }
 
-// The parts of a polygon below and above a plane across an axis. Points in the plane are in both.
+// The parts of a polygon below and above a plane across an axis. What lies in the plane alone is below.
 void cut(const Polygon& polygon, int axis, double at, std::vector<Polygon>& below,
          std::vector<Polygon>& above) {
-  Polygon low, high;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    if (p[axis] <= at) {
-      low.push_back(p);
-    }
-    if (p[axis] >= at) {
-      high.push_back(p);
-    }
-    if ((p[axis] < at && q[axis] > at) || (p[axis] > at && q[axis] < at)) {
-      Vec3d between = p + (q - p) * ((at - p[axis]) / (q[axis] - p[axis]));
-      between[axis] = at;
-      low.push_back(between);
-      high.push_back(between);
-    }
-  }
-  // What lies in the plane alone belongs to one side.
-  const auto reaches = [&](const Polygon& side) {
-    return std::any_of(side.begin(), side.end(), [&](const Vec3d& p) { return p[axis] != at; });
+  const auto height = [&](const Vec3d& p) { return p[axis] - at; };
+  const auto crossing = [&](const Vec3d& p, const Vec3d& q, double height_p, double /*height_q*/) {
+    Vec3d between = p + (q - p) * (-height_p / (q[axis] - p[axis]));
+    between[axis] = at;
+    return between;
   };
-  if (reaches(low) || !reaches(high)) {
-    below.push_back(std::move(low));
+  DividedPolygon divided = divideConvex(polygon, height, crossing);
+  if (divided.reaches_behind || !divided.reaches_front) {
+    below.push_back(std::move(divided.behind));
   }
-  if (reaches(high)) {
-    above.push_back(std::move(high));
+  if (divided.reaches_front) {
+    above.push_back(std::move(divided.front));
   }
 }
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "src/geometry/clip_convex.h"
+
 namespace sightline::layers {
 namespace {
 
@@ -80,36 +82,19 @@ void addCloud(std::vector<ShapePolygon> polygons, HullBox box, double slack, Par
   shape.bodies.push_back({std::move(polygons), std::move(cloud), box, envelope, slack});
 }
 
-Vec3d crossing(const Vec3d& a, const Vec3d& b, double height_a, double height_b) {
-  return a + (b - a) * (height_a / (height_a - height_b));
-}
-
-// Sutherland and Hodgman's clipping, for both sides at once. A polygon that lies in the plane is on both.
+// A polygon that lies in the plane is on both sides.
 void divide(const ShapePolygon& polygon, const Plane& plane, std::vector<ShapePolygon>& in_front,
             std::vector<ShapePolygon>& behind) {
-  ShapePolygon front, back;
-  bool reaches_front = false, reaches_behind = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3d &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double height_p = plane.evaluate(p), height_q = plane.evaluate(q);
-    reaches_front = reaches_front || height_p > 0.0;
-    reaches_behind = reaches_behind || height_p < 0.0;
-    if (height_p >= 0.0) {
-      front.push_back(p);
-    }
-    if (height_p <= 0.0) {
-      back.push_back(p);
-    }
-    if ((height_p < 0.0 && height_q > 0.0) || (height_p > 0.0 && height_q < 0.0)) {
-      front.push_back(crossing(p, q, height_p, height_q));
-      back.push_back(front.back());
-    }
+  const auto height = [&](const Vec3d& p) { return plane.evaluate(p); };
+  const auto crossing = [](const Vec3d& p, const Vec3d& q, double height_p, double height_q) {
+    return p + (q - p) * (height_p / (height_p - height_q));
+  };
+  DividedPolygon divided = divideConvex(polygon, height, crossing);
+  if (divided.reaches_front || !divided.reaches_behind) {
+    in_front.push_back(std::move(divided.front));
   }
-  if (reaches_front || !reaches_behind) {
-    in_front.push_back(std::move(front));
-  }
-  if (reaches_behind || !reaches_front) {
-    behind.push_back(std::move(back));
+  if (divided.reaches_behind || !divided.reaches_front) {
+    behind.push_back(std::move(divided.behind));
   }
 }
 
