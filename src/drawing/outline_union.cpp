@@ -1,8 +1,8 @@
 #include "src/drawing/outline_union.h"
 
 #include <algorithm>
-#include <polyclipping/clipper.hpp>
 
+#include "src/drawing/clipper_paths.h"
 #include "src/drawing/sliver.h"
 
 namespace sightline::drawing {
@@ -13,36 +13,13 @@ constexpr int kCoarsest = 16;  // low bits that may be dropped where Clipper fai
 // Unites the loops with their coordinates' lowest `bits` dropped. Clipper's sweep rarely fails where many
 // edges cross within a grid cell.
 bool unite(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
-  ClipperLib::Clipper clipper;
-  ClipperLib::Path path;
-  for (const GridPath& loop : loops) {
-    path.clear();
-    for (const GridPoint& p : loop) {
-      path.emplace_back(p.x >> bits, p.y >> bits);
+  return clipSafely([&] {
+    ClipperLib::Clipper clipper;
+    for (const GridPath& loop : loops) {
+      clipper.AddPath(clipperPath(loop, bits), ClipperLib::ptSubject, true);
     }
-    clipper.AddPath(path, ClipperLib::ptSubject, true);
-  }
-  return clipper.Execute(ClipperLib::ctUnion, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-}
-
-// Clipper throws if its sweep reaches an invalid state; that counts as a failure.
-bool uniteSafely(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
-  try {
-    return unite(loops, bits, result);
-  } catch (const ClipperLib::clipperException&) {
-    return false;
-  }
-}
-
-void take(const ClipperLib::Paths& united, int bits, std::vector<GridPath>& loops) {
-  const std::int64_t cell = std::int64_t{1} << bits;
-  loops.clear();
-  for (const ClipperLib::Path& path : united) {
-    GridPath& ring = loops.emplace_back();
-    for (const ClipperLib::IntPoint& p : path) {
-      ring.push_back({p.X * cell, p.Y * cell});
-    }
-  }
+    return clipper.Execute(ClipperLib::ctUnion, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
+  });
 }
 
 }  // namespace
@@ -79,8 +56,11 @@ void uniteLoops(std::vector<GridPath>& loops, double min_width) {
   // If all attempts fail, the loops stay as they are.
   for (int bits = 0; bits <= kCoarsest; ++bits) {
     ClipperLib::Paths united;
-    if (uniteSafely(loops, bits, united)) {
-      take(united, bits, loops);
+    if (unite(loops, bits, united)) {
+      loops.clear();
+      for (const ClipperLib::Path& path : united) {
+        loops.push_back(gridPath(path, bits));
+      }
       break;
     }
   }

@@ -1,8 +1,8 @@
 #include "src/drawing/seen_order.h"
 
 #include <algorithm>
-#include <polyclipping/clipper.hpp>
 
+#include "src/drawing/clipper_paths.h"
 #include "src/drawing/sliver.h"
 
 namespace sightline::drawing {
@@ -10,56 +10,40 @@ namespace {
 
 constexpr std::size_t kMaxInFront = 16;  // outlines that are taken away from an object's image, at most
 
-ClipperLib::Path clipperPath(const GridPath& path) {
-  ClipperLib::Path result;
-  for (const GridPoint& p : path) {
-    result.emplace_back(p.x, p.y);
-  }
-  return result;
-}
-
 // Leaves what lies on the page; all of it if Clipper fails.
 void cutToPage(const GridPath& page, ClipperLib::Paths& left) {
-  try {
+  ClipperLib::Paths result;
+  const bool is_cut = clipSafely([&] {
     ClipperLib::Clipper clipper;
     clipper.AddPaths(left, ClipperLib::ptSubject, true);
     clipper.AddPath(clipperPath(page), ClipperLib::ptClip, true);
-    ClipperLib::Paths result;
-    if (clipper.Execute(ClipperLib::ctIntersection, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero)) {
-      left = std::move(result);
-    }
-  } catch (const ClipperLib::clipperException&) {
-    return;
+    return clipper.Execute(ClipperLib::ctIntersection, result, ClipperLib::pftNonZero,
+                           ClipperLib::pftNonZero);
+  });
+  if (is_cut) {
+    left = std::move(result);
   }
-}
-
-GridPath gridPath(const ClipperLib::Path& path) {
-  GridPath result;
-  for (const ClipperLib::IntPoint& p : path) {
-    result.push_back({p.X, p.Y});
-  }
-  return result;
 }
 
 // Takes an outline away from what is left of an image. Nothing changes if Clipper fails.
 // drop_slivers: rings that are slivers, as outlines leave out, do not count.
 void takeAway(const std::vector<GridPath>& outline, bool drop_slivers, ClipperLib::Paths& left) {
-  try {
+  ClipperLib::Paths result;
+  const bool is_taken = clipSafely([&] {
     ClipperLib::Clipper clipper;
     clipper.AddPaths(left, ClipperLib::ptSubject, true);
     for (const GridPath& ring : outline) {
       clipper.AddPath(clipperPath(ring), ClipperLib::ptClip, true);
     }
-    ClipperLib::Paths result;
-    if (clipper.Execute(ClipperLib::ctDifference, result, ClipperLib::pftNonZero, ClipperLib::pftEvenOdd)) {
-      left = std::move(result);
-      if (drop_slivers) {
-        std::erase_if(
-            left, [](const ClipperLib::Path& ring) { return isSliver(gridPath(ring), Outliner::kMinWidth); });
-      }
-    }
-  } catch (const ClipperLib::clipperException&) {
+    return clipper.Execute(ClipperLib::ctDifference, result, ClipperLib::pftNonZero, ClipperLib::pftEvenOdd);
+  });
+  if (!is_taken) {
     return;
+  }
+  left = std::move(result);
+  if (drop_slivers) {
+    std::erase_if(left,
+                  [](const ClipperLib::Path& ring) { return isSliver(gridPath(ring), Outliner::kMinWidth); });
   }
 }
 

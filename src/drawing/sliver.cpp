@@ -1,7 +1,8 @@
 #include "src/drawing/sliver.h"
 
 #include <cmath>
-#include <polyclipping/clipper.hpp>
+
+#include "src/drawing/clipper_paths.h"
 
 namespace sightline::drawing {
 namespace {
@@ -21,19 +22,14 @@ double meanWidth(const GridPath& ring) {
 
 // Whether something is left of a ring if its borders move inwards. True if Clipper fails.
 bool hasInside(const GridPath& ring, double distance) {
-  ClipperLib::Path path;
-  for (const GridPoint& p : ring) {
-    path.emplace_back(p.x, p.y);
-  }
-  try {
+  ClipperLib::Paths inside;
+  const bool is_known = clipSafely([&] {
     ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtRound, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths inside;
+    offset.AddPath(clipperPath(ring), ClipperLib::jtRound, ClipperLib::etClosedPolygon);
     offset.Execute(inside, -distance);
-    return !inside.empty();
-  } catch (const ClipperLib::clipperException&) {
     return true;
-  }
+  });
+  return !is_known || !inside.empty();
 }
 
 }  // namespace
