@@ -74,9 +74,8 @@ TEST(Bake, GivesTheSameBytesWithAnyProcesses) {
     const std::string file = folder.file(std::to_string(processes) + ".sight");
     const Outcome outcome =
         Started(toolWords(processes, bakeArguments(kShip, file, {"--threads", "2", "--json", "-"}))).wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json report = printedJson(outcome);
     EXPECT_TRUE(contents(file) == expected) << processes << " processes";
-    const json report = parse(outcome.out);
     EXPECT_EQ(report["processes"], processes) << outcome.out;
     EXPECT_GE(report["all_peak_bytes"], report["peak_bytes"]);
   }
@@ -163,7 +162,7 @@ TEST(Bake, FitsABudgetInBytesOrSaysThatItCannot) {
   const std::string file = folder.file("ship.sight");
   const Outcome fitted = runTool(bakeArguments(kShip, file, {"--byte-budget", "140000", "--json", "-"}));
   ASSERT_EQ(fitted.code, 0) << fitted.err;
-  const json info = parse(runTool({"info", file, "--json", "-"}).out);
+  const json info = toolJson({"info", file});
   EXPECT_EQ(info["settings"]["all"]["byte_budget"], 140000);
   const std::string settings = info["settings"]["all"].dump();
   EXPECT_LE(info["bytes"].get<std::size_t>(), 140000 + settings.size() + 64);
@@ -189,8 +188,8 @@ TEST(Bake, ABudgetInBytesThatIsTooSmallLeavesThePartsForALargerOne) {
     EXPECT_FALSE(std::filesystem::exists(other)) << other;
   }
   const Outcome larger = withBudget({"--byte-budget", "140000", "--resume", "--json", "-"});
-  ASSERT_EQ(larger.code, 0) << larger.err;
-  EXPECT_EQ(parse(larger.out)["parts_before"], parse(larger.out)["parts"]);
+  const json report = printedJson(larger);
+  EXPECT_EQ(report["parts_before"], report["parts"]);
   EXPECT_FALSE(std::filesystem::exists(file + ".parts"));
 }
 
@@ -236,8 +235,7 @@ std::string warningOf(const TemporaryFolder& folder, const std::string& scene,
   std::vector<std::string> arguments{"bake", scene, "-o", file, "--json", "-"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const Outcome outcome = runTool(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const json report = parse(outcome.out), info = parse(runTool({"info", file, "--json", "-"}).out);
+  const json report = printedJson(outcome), info = toolJson({"info", file});
   EXPECT_EQ(report["warning"], info["warning"]);
   const std::string text = runTool({"info", file}).out;
   if (report["warning"].is_null()) {
@@ -276,16 +274,16 @@ TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("walls.obj", kWalls), file = folder.file("F.sight");
   ASSERT_EQ(runTool(bakeArguments(scene, file, {"--region", "500000,0,-4,500010,5,4"})).code, 0);
-  const json info = parse(runTool({"info", file, "--json", "-"}).out);
+  const json info = toolJson({"info", file});
   // The octree may be larger than the region, to be a cube.
   EXPECT_LE(info["min"][0].get<double>(), 500000.0);
   EXPECT_GE(info["min"][0].get<double>(), 499990.0);
   EXPECT_GE(info["max"][0].get<double>(), 500010.0);
   EXPECT_LE(info["max"][0].get<double>(), 500020.0);
   EXPECT_GE(info["max"][2].get<double>(), 4.0);
-  const json inside = parse(runTool({"query", file, "--points", "500005,2,3.9", "--json", "-"}).out);
+  const json inside = toolJson({"query", file, "--points", "500005,2,3.9"});
   EXPECT_TRUE(inside["points"][0]["cell"].is_number());
-  const json outside = parse(runTool({"query", file, "--points", "500005,2,30", "--json", "-"}).out);
+  const json outside = toolJson({"query", file, "--points", "500005,2,30"});
   EXPECT_TRUE(outside["points"][0]["cell"].is_null());
   EXPECT_EQ(outside["points"][0]["visible"], json::array({0, 1}));
 }
@@ -293,11 +291,7 @@ TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
 TEST(Bake, OfAPathHoldsSetsWhereItLeadsAndOfFreeSpaceWhereItCanLead) {
   const TemporaryFolder folder;
   const auto facts = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"--force", "--json", "-"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = runTool(bakeArguments(kShip, folder.file("F.sight"), arguments));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out);
+    return toolJson(bakeArguments(kShip, folder.file("F.sight"), joined({"--force"}, more)));
   };
   const json everywhere = facts({}), path = facts({"--viewers", "path", "--reach", "0.5"});
   const json free = facts({"--viewers", "free"}), low = facts({"--viewers", "free", "--max-height", "1"});
@@ -324,14 +318,14 @@ TEST(Bake, TakesSeveralRegionsAndPointsToStartFrom) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("walls.obj", kWalls), file = folder.file("F.sight");
   const auto cellAt = [&](const std::string& point) {
-    return parse(runTool({"query", file, "--points", point, "--json", "-"}).out)["points"][0];
+    return toolJson({"query", file, "--points", point})["points"][0];
   };
   ASSERT_EQ(runTool(bakeArguments(scene, file,
                                   {"--region", "500000,0,-10,500010,5,-9", "--region",
                                    "500000,0,9,500010,5,10", "--triangle-budget", "1"}))
                 .code,
             0);
-  const json report = parse(runTool({"info", file, "--json", "-"}).out);
+  const json report = toolJson({"info", file});
   EXPECT_EQ(report["settings"]["all"]["viewers"]["boxes"], 2);
   EXPECT_GT(report["stop_reasons"]["outside"], 0);
   EXPECT_EQ(cellAt("500005,2,9.5")["visible"], json::array({0})) << "the wall hides what is behind it";

@@ -138,7 +138,7 @@ TEST(Bench, SeveralBoxesAnObjectAreFewerThanOne) {
       benchOfWall(folder,
                   "o two\nv -1 -1 -10\nv 0 -1 -10\nv 0 0 -10\n"
                   "v 2 -1 -13\nv 2.5 -1 -13\nv 2.5 0 -13\nf 5 6 7\nf 8 9 10\n");
-  const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
+  const json result = toolJson(bench)["scenes"][0];
   EXPECT_EQ(result["witnessed"], 1);
   EXPECT_EQ(result["boxes"], 2);
   EXPECT_EQ(result["several_boxes"], 1);
@@ -146,11 +146,11 @@ TEST(Bench, SeveralBoxesAnObjectAreFewerThanOne) {
   EXPECT_EQ(result["several_boxes_overestimate"], json::parse("[1.0, 1.0]"));
   EXPECT_NE(runTool(bench).out.find("1.00 that of several (1 objects)"), std::string::npos);
   const TemporaryFolder kept;
-  std::vector<std::string> cached = joined(bench, {"--json", "-"});
+  std::vector<std::string> cached = bench;
   std::erase(cached, "--no-cache");
   cached.insert(cached.end(), {"--cache", kept.file("cache")});
   for (int run = 0; run < 2; ++run) {
-    const json again = parse(runTool(cached).out)["scenes"][0];
+    const json again = toolJson(cached)["scenes"][0];
     EXPECT_EQ(again["frames_from_cache"], run);
     EXPECT_EQ(again["several_boxes"], 1) << "the answers for several boxes have a file of their own";
     EXPECT_EQ(again["boxes"], 2);
@@ -165,26 +165,22 @@ TEST(Bench, BoxesAreThoseThatAnyTestOfBoxesMustKeep) {
       benchOfWall(folder,
                   "o slanted\nv -1 -1 -10\nv 1 -1 -10\nv 2.5 1 -13\nf 5 6 7\n"
                   "o hidden\nv -1 -1 -8\nv 0 -1 -8\nv 0 0 -9\nf 8 9 10\n");
-  const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
+  const json result = toolJson(bench)["scenes"][0];
   EXPECT_EQ(result["witnessed"], 1);
   EXPECT_EQ(result["boxes"], 2);
   EXPECT_EQ(result["undecided_boxes"], 0);
   EXPECT_EQ(result["boxes_overestimate"], json::parse("[2.0, 2.0]"));
   EXPECT_EQ(result["runs"][0]["kept"], 3);
   EXPECT_NE(runTool(bench).out.find("boxes: 2.00 kept/exact"), std::string::npos);
-  const json undecided =
-      parse(runTool(joined(bench, {"--proof-steps", "0", "--json", "-"})).out)["scenes"][0];
+  const json undecided = toolJson(joined(bench, {"--proof-steps", "0"}))["scenes"][0];
   EXPECT_EQ(undecided["boxes"], 1) << "only what rays have seen";
   EXPECT_EQ(undecided["undecided_boxes"], 2);
 }
 
 TEST(Bench, KeepsWhatCullKeeps) {
-  const json result =
-      parse(runTool(benchOf(kBenchCity, {"--no-cache", "--method", "occlusion-tree", "--occluder-count", "64",
-                                         "--variant", "FSC", "--json", "-"}))
-                .out);
-  const json cull =
-      parse(runTool({"cull", kBenchCity, "--frames", "0:400:100", "--variant", "FSC", "--json", "-"}).out);
+  const json result = toolJson(benchOf(kBenchCity, {"--no-cache", "--method", "occlusion-tree",
+                                                    "--occluder-count", "64", "--variant", "FSC"}));
+  const json cull = toolJson({"cull", kBenchCity, "--frames", "0:400:100", "--variant", "FSC"});
   std::size_t kept = 0;
   for (const json& frame : cull["frames"]) {
     kept += frame["visible"].size();
@@ -196,10 +192,9 @@ TEST(Bench, KeepsWhatCullKeeps) {
 
 TEST(Bench, ColumnsAndKeysAreDescribed) {
   const TemporaryFolder folder;
-  const Outcome outcome = runTool(benchOf(kBenchCity, {"--no-cache", "--draw", "--method", "occlusion-tree",
-                                                       "--csv", folder.file("bench.csv"), "--json", "-"}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  expectDocumented(parse(outcome.out), {"bench"});
+  expectDocumented(toolJson(benchOf(kBenchCity, {"--no-cache", "--draw", "--method", "occlusion-tree",
+                                                 "--csv", folder.file("bench.csv")})),
+                   {"bench"});
   std::set<std::string> words = wordsOfSection("## bench");
   const std::vector<std::vector<std::string>> lines = csvLines(contents(folder.file("bench.csv")));
   ASSERT_FALSE(lines.empty());
@@ -213,12 +208,11 @@ TEST(Bench, ColumnsAndKeysAreDescribed) {
 TEST(Bench, ExactVisibilityIsKeptFromRunToRun) {
   const TemporaryFolder folder;
   const auto bench_of = [&](const std::string& scene, const std::string& frames) {
-    return benchOf(scene, {"--cache", folder.file("cache"), "--method", "frustum", "--json", "-"}, frames,
-                   "1");
+    return benchOf(scene, {"--cache", folder.file("cache"), "--method", "frustum"}, frames, "1");
   };
   const std::vector<std::string> bench = bench_of(kBenchCity, "0:400:100");
   const auto scene = [](const std::vector<std::string>& arguments) {
-    return parse(runTool(arguments).out)["scenes"][0];
+    return toolJson(arguments)["scenes"][0];
   };
   const json first = scene(bench);
   EXPECT_EQ(first["frames_from_cache"], 0);

@@ -85,8 +85,7 @@ class Check : public CheckedBake {
 
 TEST_F(Check, AccountsForEveryClaimWhateverTheThreads) {
   const Outcome one = check({"--json", "-"});
-  EXPECT_EQ(one.code, 0) << one.out << one.err;
-  const json report = parse(one.out);
+  const json report = printedJson(one);
   expectDocumented(report, {"check"});
   EXPECT_EQ(report["contradicted"], 0);
   EXPECT_EQ(report["claims"].get<std::uint64_t>(),
@@ -150,14 +149,12 @@ TEST_F(CheckedBake, ClaimsAreThoseOfWhereViewersAreInACell) {
     bake(scene_, file_,
          {"--depth", "2", "--witnesses", witnesses_, "--occlusion", occlusion, "--merge-tolerance", "0.5",
           region(viewers.first_min, viewers.first_max), region(viewers.second_min, viewers.second_max)});
-    const Outcome one = check({"--json", "-"});
-    EXPECT_EQ(one.code, 0) << one.out << one.err;
-    const json report = parse(one.out);
+    const json report = printedJson(check({"--json", "-"}));
     EXPECT_GT(report["claims"], 100) << occlusion;
     EXPECT_EQ(report["contradicted"], 0) << occlusion;
     EXPECT_EQ(report["kinds"]["without"]["claims"], 0) << occlusion << ": a claim has no witness";
     EXPECT_GT(report["proved"], report["survived"]) << occlusion;
-    const json info = parse(runTool({"info", file_, "--json", "-"}).out);
+    const json info = toolJson({"info", file_});
     EXPECT_GT(info["partial_cells"], viewers.partial_cells) << occlusion;
     const Outcome pairs = runTool({"verify", scene_, "--baked", file_, "--proof", "--pairs", "60"});
     EXPECT_EQ(pairs.code, 0) << pairs.out << pairs.err;
@@ -177,11 +174,10 @@ TEST_F(CheckedBake, ABudgetInBytesLeavesWitnessesTrue) {
     bake(kCheckShip, file_,
          joined({"--depth", "3", "--witnesses", witnesses_, "--byte-budget", std::to_string(budget)},
                 regions));
-    const Outcome outcome = check({"--json", "-"});
-    ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-    EXPECT_GT(parse(outcome.out)["kinds"]["cells below"]["claims"], 0) << "some cells became one";
-    EXPECT_GT(parse(outcome.out)["inherited"], 100);
-    EXPECT_EQ(parse(outcome.out)["contradicted"], 0);
+    const json report = printedJson(check({"--json", "-"}));
+    EXPECT_GT(report["kinds"]["cells below"]["claims"], 0) << "some cells became one";
+    EXPECT_GT(report["inherited"], 100);
+    EXPECT_EQ(report["contradicted"], 0);
   }
 }
 
@@ -220,13 +216,12 @@ TEST_F(Check, WitnessesOfASideAreOfCellsThatWereNotDivided) {
 TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
   use("fused");
   const Outcome outcome = check({"--json", "-"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const json report = parse(outcome.out);
+  const json report = printedJson(outcome);
   EXPECT_EQ(report["kinds"]["without"]["claims"], 0);
   EXPECT_GT(report["kinds"]["surfaces"]["proved"], 0);
   EXPECT_GT(report["survived"], 0);
   EXPECT_EQ(check({"--json", "-", "--threads", "3"}).out, outcome.out) << "rays depend on the threads";
-  const json whole = parse(check({"--json", "-", "--divisions", "0"}).out);
+  const json whole = printedJson(check({"--json", "-", "--divisions", "0"}));
   EXPECT_EQ(whole["claims"], report["claims"]);
   EXPECT_LT(whole["proved"], report["proved"]) << "nothing is proved in parts";
 }
@@ -299,7 +294,7 @@ TEST_F(Check, ClaimsWithoutWitnessesAreCountedAsSuch) {
   Witnesses witnesses = readBack();
   witnesses.all.clear();
   writeBack(witnesses);
-  const json report = parse(check({"--json", "-"}).out);
+  const json report = printedJson(check({"--json", "-"}));
   EXPECT_GT(report["kinds"]["without"]["claims"], 0);
   EXPECT_EQ(report["kinds"]["without"]["claims"].get<int>() + report["kinds"]["no eyes"]["claims"].get<int>(),
             report["claims"]);

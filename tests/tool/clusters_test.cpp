@@ -25,19 +25,12 @@ struct WallScene {
   }
 };
 
-json resultOf(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
-}
-
 TEST(Clusters, OfAnObjectThatIsPartlyHiddenAreCulledAlone) {
   const WallScene wall;
-  const json whole = resultOf(wall.command("cull", "0"));
+  const json whole = toolJson(wall.command("cull", "0"));
   EXPECT_EQ(whole["frames"][0]["visible"], json({0, 1}));
   EXPECT_FALSE(whole.contains("clusters"));
-  const json cut = resultOf(wall.command("cull", "1"));
+  const json cut = toolJson(wall.command("cull", "1"));
   EXPECT_EQ(cut["scene"]["objects"], 2);
   EXPECT_EQ(cut["scene"]["clusters"], 4);
   EXPECT_EQ(cut["scene"]["cluster_triangles"], 1);
@@ -60,7 +53,7 @@ TEST(Clusters, AreProvedHiddenOneByOne) {
   const WallScene wall;
   std::vector<std::string> verify = wall.command("verify", "1");
   verify.insert(verify.end(), {"--proof", "--width", "64", "--height", "36"});
-  const json verified = resultOf(verify);
+  const json verified = toolJson(verify);
   EXPECT_EQ(verified["scene"]["clusters"], 4);
   EXPECT_EQ(verified["false_culls"], 0);
   EXPECT_EQ(verified["proved"], 1) << "the triangle behind the wall";

@@ -24,16 +24,9 @@ struct SlitScene {
   std::string scene = folder.write("slit.obj", kSlitObj), path = folder.write("walk.path.json", kSlitPath);
 };
 
-json of(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
-}
-
 TEST(CrackWidth, InfoCountsCracksAndWhatClosingThemHides) {
   const SlitScene slit;
-  const json plain = of({"info", slit.scene})["cracks"];
+  const json plain = toolJson({"info", slit.scene})["cracks"];
   EXPECT_FALSE(plain.contains("closed"));
   ASSERT_EQ(plain["counts"].size(), 5u);
   for (const json& bin : plain["counts"]) {
@@ -42,7 +35,7 @@ TEST(CrackWidth, InfoCountsCracksAndWhatClosingThemHides) {
   ASSERT_EQ(plain["places"].size(), 1u);
   EXPECT_EQ(plain["places"][0]["objects"], json({0, 1}));
   EXPECT_NEAR(plain["places"][0]["widest"], 0.0005, 1e-9);
-  const json info = of({"info", slit.scene, "--path", slit.path, "--crack-width", "0.001"});
+  const json info = toolJson({"info", slit.scene, "--path", slit.path, "--crack-width", "0.001"});
   const json closed = info["cracks"]["closed"];
   EXPECT_EQ(closed["frames"], 2);
   EXPECT_EQ(closed["crack_width"], 0.001);
@@ -55,7 +48,7 @@ TEST(CrackWidth, InfoWalksOnceForEachWidth) {
   const SlitScene slit;
   const std::vector<std::string> arguments{"info",    slit.scene,      "--path",
                                            slit.path, "--crack-width", "0.0001,0,0.001"};
-  const json cracks = of(arguments)["cracks"];
+  const json cracks = toolJson(arguments)["cracks"];
   ASSERT_EQ(cracks["closings"].size(), 2u) << "0 is the scene as it is";
   EXPECT_EQ(cracks["closings"][0]["crack_width"], 0.0001);
   EXPECT_EQ(cracks["closings"][0]["kept_closed"], 3.0) << "the slit is wider";
@@ -78,20 +71,20 @@ TEST(CrackWidth, EveryOutputNamesIt) {
     arguments.insert(arguments.end(), {"--path", slit.path, "--crack-width", "0.001"});
     return arguments;
   };
-  const json cull = of(with({"cull", slit.scene, "--method", "depth-pyramid"}));
+  const json cull = toolJson(with({"cull", slit.scene, "--method", "depth-pyramid"}));
   EXPECT_EQ(cull["scene"]["crack_width"], 0.001);
   EXPECT_LE(cull["scene"]["crack_slack"], 0.002);
   EXPECT_EQ(cull["frames"][0]["visible"], json({0, 1}));
   expectDocumented(cull, {"cull"});
-  const json open = of({"cull", slit.scene, "--method", "depth-pyramid", "--path", slit.path});
+  const json open = toolJson({"cull", slit.scene, "--method", "depth-pyramid", "--path", slit.path});
   EXPECT_FALSE(open["scene"].contains("crack_width"));
   EXPECT_EQ(open["frames"][0]["visible"], json({0, 1, 2}));
-  const json verified = of(with({"verify", slit.scene, "--width", "64", "--height", "36", "--proof"}));
+  const json verified = toolJson(with({"verify", slit.scene, "--width", "64", "--height", "36", "--proof"}));
   EXPECT_EQ(verified["scene"]["crack_width"], 0.001);
   EXPECT_EQ(verified["false_culls"], 0);
   EXPECT_EQ(verified["undecided"], 0);
   expectDocumented(verified, {"verify"});
-  const json walked = of(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
+  const json walked = toolJson(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
   EXPECT_EQ(walked["scene"]["crack_width"], 0.001);
   const Outcome walk_text =
       runTool(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
@@ -101,7 +94,7 @@ TEST(CrackWidth, EveryOutputNamesIt) {
   EXPECT_NE(text.err.find("count as closed"), std::string::npos) << text.err;
   const Outcome bench = runTool(with({"bench", slit.scene, "--csv", "-", "--method", "frustum"}));
   EXPECT_NE(bench.out.find("--crack-width 0.001"), std::string::npos) << bench.out << bench.err;
-  const json measured = of(with({"bench", slit.scene, "--method", "frustum"}));
+  const json measured = toolJson(with({"bench", slit.scene, "--method", "frustum"}));
   EXPECT_EQ(measured["scenes"][0]["scene"]["crack_width"], 0.001);
 }
 
@@ -112,11 +105,11 @@ TEST(CrackWidth, PreparedSurfacesBelongToTheirWidth) {
                                       "--method", "depth-pyramid", "--prepared", file};
   std::vector<std::string> closed = open;
   closed.insert(closed.end(), {"--crack-width", "0.001"});
-  EXPECT_EQ(of(closed)["frames"][0]["visible"], json({0, 1}));
+  EXPECT_EQ(toolJson(closed)["frames"][0]["visible"], json({0, 1}));
   EXPECT_EQ(runTool(closed).err.find("written anew"), std::string::npos) << "they are there";
   const Outcome other = runTool(open);
   EXPECT_NE(other.err.find("written anew: it is of --crack-width 0.001"), std::string::npos) << other.err;
-  EXPECT_EQ(of(open)["frames"][0]["visible"], json({0, 1, 2}));
+  EXPECT_EQ(toolJson(open)["frames"][0]["visible"], json({0, 1, 2}));
 }
 
 TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
@@ -125,13 +118,13 @@ TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
   const Outcome baked = runTool({"bake", slit.scene, "-o", sight, "--depth", "1", "--crack-width", "0.001"});
   ASSERT_EQ(baked.code, 0) << baked.err;
   EXPECT_NE(baked.out.find("--crack-width 0.001"), std::string::npos) << baked.out;
-  const json facts = of({"info", sight});
+  const json facts = toolJson({"info", sight});
   EXPECT_EQ(facts["settings"]["all"]["crack_width"], 0.001);
   EXPECT_EQ(facts["scene"]["crack_width"], 0.001);
   EXPECT_LE(facts["scene"]["crack_slack"], 0.002);
   expectDocumented(facts, {"info of a baked file"});
   EXPECT_NE(runTool({"info", sight}).out.find("closed by --crack-width 0.001"), std::string::npos);
-  const json answered = of({"query", sight, "--points", "0,0,0"});
+  const json answered = toolJson({"query", sight, "--points", "0,0,0"});
   EXPECT_EQ(answered["scene"]["crack_width"], 0.001);
   EXPECT_EQ(answered["scene"]["crack_slack"], facts["scene"]["crack_slack"]);
   const Outcome query = runTool({"query", sight, "--points", "0,0,0"});
@@ -146,8 +139,8 @@ TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
   const Outcome info = runTool({"info", sight, "--crack-width", "0.001"});
   EXPECT_EQ(info.code, 2);
   EXPECT_NE(info.err.find("leave them out"), std::string::npos) << info.err;
-  const json pairs =
-      of({"verify", slit.scene, "--baked", sight, "--proof", "--pairs", "10", "--crack-width", "0.001"});
+  const json pairs = toolJson(
+      {"verify", slit.scene, "--baked", sight, "--proof", "--pairs", "10", "--crack-width", "0.001"});
   EXPECT_EQ(pairs["scene"]["crack_width"], 0.001);
   EXPECT_EQ(pairs["false_culls"], 0);
 }

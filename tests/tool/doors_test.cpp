@@ -29,12 +29,10 @@ class DoorCommands : public ::testing::Test {
 
   static std::string file(const std::string& name = "house.sight") { return made_->file(name); }
   static json bake(const std::string& name, const std::vector<std::string>& more) {
-    const Outcome outcome = runTool(
+    return toolJson(
         joined({"bake", kHouse, "-o", file(name), "--occlusion", "fused", "--depth", "1", "--triangle-budget",
-                "300", "--region", "0.5,0.2,-4.2,3,2.2,-2", "--doors", kDoors, "--json", "-"},
+                "300", "--region", "0.5,0.2,-4.2,3,2.2,-2", "--doors", kDoors},
                more));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out);
   }
   static Outcome run(const std::string& command, const std::vector<std::string>& more) {
     return runTool(joined({command, kHouse, "--baked", file()}, more));
@@ -51,11 +49,9 @@ TEST_F(DoorCommands, AreToldOfByBakeAndInfo) {
   ASSERT_EQ(groups, 3u);
   EXPECT_EQ(report_["doors"].back()["objects"].size(), groups - 1) << "all doors are the last group";
   EXPECT_EQ(report_["settings"]["all"]["doors"].size(), groups - 1);
-  const Outcome open = runTool({"info", file(), "--json", "-"});
-  const Outcome closed = runTool({"info", file(), "--closed", "all", "--json", "-"});
-  ASSERT_EQ(open.code + closed.code, 0) << open.err << closed.err;
-  expectDocumented(parse(closed.out), {"info of a baked file"});
-  EXPECT_LT(parse(closed.out)["sets"]["objects"]["mean"], parse(open.out)["sets"]["objects"]["mean"]);
+  const json open = toolJson({"info", file()}), closed = toolJson({"info", file(), "--closed", "all"});
+  expectDocumented(closed, {"info of a baked file"});
+  EXPECT_LT(closed["sets"]["objects"]["mean"], open["sets"]["objects"]["mean"]);
 }
 
 TEST_F(DoorCommands, LeaveOutNothingThatIsVisibleWhicheverAreClosed) {
@@ -100,21 +96,15 @@ TEST_F(DoorCommands, AreContradictedWhereWhatTheyHideIsVisible) {
 
 TEST_F(DoorCommands, AreCheckedAsTheyAreClosed) {
   const auto check = [](const std::vector<std::string>& doors) {
-    return runTool(
-        joined({"check", file(), kHouse, "--divisions", "0", "--rays", "2", "--json", "-"}, doors));
+    return toolJson(joined({"check", file(), kHouse, "--divisions", "0", "--rays", "2"}, doors));
   };
-  const Outcome open = check({}), closed = check({"--closed", "all"});
-  ASSERT_EQ(open.code, 0) << open.err;
-  ASSERT_EQ(closed.code, 0) << closed.err;
-  EXPECT_GT(parse(closed.out)["claims"], parse(open.out)["claims"]);
+  EXPECT_GT(check({"--closed", "all"})["claims"], check({})["claims"]);
 }
 
 TEST_F(DoorCommands, ChangeWhatAQueryAnswers) {
   const auto visible = [](const std::vector<std::string>& doors) {
-    const Outcome outcome =
-        runTool(joined({"query", file(), "--points", "1,1,-3", "--points", "2,2,-4", "--json", "-"}, doors));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const json report = parse(outcome.out);
+    const json report =
+        toolJson(joined({"query", file(), "--points", "1,1,-3", "--points", "2,2,-4"}, doors));
     std::size_t count = 0;
     for (const json& point : report["points"]) {
       count += point["visible"].size();

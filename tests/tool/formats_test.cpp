@@ -11,13 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-json written(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
-  EXPECT_EQ(outcome.code, 0) << ::testing::PrintToString(arguments) << outcome.err;
-  return parse(outcome.out);
-}
-
 TEST(Formats, AKeyThatThePageDoesNotNameIsFound) {
   const std::set<std::string> words{"a", "b"};
   EXPECT_NONFATAL_FAILURE(expectDocumented(json{{"a", {{{"b", 1}}, {{"c", 2}}}}}, words, "form"),
@@ -28,19 +21,19 @@ TEST(Formats, AKeyThatThePageDoesNotNameIsFound) {
 }
 
 TEST(Formats, TheKeysOfInfoAreDescribed) {
-  expectDocumented(written({"info", kCity}), {"info"});
+  expectDocumented(toolJson({"info", kCity}), {"info"});
 }
 
 TEST(Formats, TheKeysOfBakeInfoOfABakedFileAndQueryAreDescribed) {
   const TemporaryFolder folder;
   const std::string file = folder.file("city.sight");
-  expectDocumented(written({"bake", kCity, "-o", file, "--depth", "2"}), {"bake", "info of a baked file"});
-  expectDocumented(written({"info", file}), {"info of a baked file"});
-  expectDocumented(written({"query", file, "--points", "0,2,0", "--points", "0,9999,0"}), {"query"});
-  expectDocumented(written({"cull", kCity, "--frames", "0:2", "--baked", file, "--visible-sets", "on"}),
+  expectDocumented(toolJson({"bake", kCity, "-o", file, "--depth", "2"}), {"bake", "info of a baked file"});
+  expectDocumented(toolJson({"info", file}), {"info of a baked file"});
+  expectDocumented(toolJson({"query", file, "--points", "0,2,0", "--points", "0,9999,0"}), {"query"});
+  expectDocumented(toolJson({"cull", kCity, "--frames", "0:2", "--baked", file, "--visible-sets", "on"}),
                    {"cull"});
   expectDocumented(
-      written({"cull", kCity, "--frames", "0:2", "--baked", file, "--method", "visibility-octree"}),
+      toolJson({"cull", kCity, "--frames", "0:2", "--baked", file, "--method", "visibility-octree"}),
       {"cull"});
 }
 
@@ -57,19 +50,18 @@ TEST(Formats, TheKeysOfCullAreDescribedWhateverTheMethod) {
                                              {"opacity-map", "--surfaces", "alone", "--budget-us", "100"},
                                              {"depth-pyramid"},
                                              {"depth-pyramid", "--draw-object-us", "1"}}) {
-    expectDocumented(written(joined({"cull", kCity, "--frames", "0:2", "--method"}, method)), {"cull"});
+    expectDocumented(toolJson(joined({"cull", kCity, "--frames", "0:2", "--method"}, method)), {"cull"});
   }
 }
 
 TEST(Formats, TheKeysOfVerifyAreDescribedForOneSettingAndForSeveral) {
   const std::vector<std::string> verify{"verify", kCity, "--frames", "0", "--width", "32", "--height", "18"};
-  expectDocumented(written(verify), {"verify"});
-  expectDocumented(written(joined(verify, {"--hierarchy", "kd,bvh"})), {"verify"});
+  expectDocumented(toolJson(verify), {"verify"});
+  expectDocumented(toolJson(joined(verify, {"--hierarchy", "kd,bvh"})), {"verify"});
   // With the centres of pixels there are false culls, if any, in coarse maps.
-  const Outcome wrong = runTool(joined(verify, {"--method", "depth-pyramid", "--coverage", "centre",
-                                                "--resolution", "8x4", "--focus", "0", "--json", "-"}));
-  const json witnesses = parse(wrong.out);
-  EXPECT_EQ(wrong.code, 1);
+  const json witnesses = toolJson(joined(verify, {"--method", "depth-pyramid", "--coverage", "centre",
+                                                  "--resolution", "8x4", "--focus", "0"}),
+                                  1);
   EXPECT_FALSE(witnesses["witnesses"].empty());
   expectDocumented(witnesses, {"verify"});
 }
@@ -83,51 +75,51 @@ TEST(Formats, TheKeysOfWalkAreDescribed) {
                                       "--height", "36",
                                       "--method", "occlusion-tree,depth-pyramid",
                                       "-o",       folder.file("report")};
-  const json result = written(walk);
+  const json result = toolJson(walk);
   expectDocumented(result, {"walk"});
   EXPECT_EQ(parse(contents(folder.file("report/walk.json"))), result);
 }
 
 TEST(Formats, TheKeysOfLayersAreDescribed) {
-  expectDocumented(written({"layers", "demo:toothpicks?n=10", "--frames", "0:2", "--arcs", "all"}),
+  expectDocumented(toolJson({"layers", "demo:toothpicks?n=10", "--frames", "0:2", "--arcs", "all"}),
                    {"layers"});
 }
 
 TEST(Formats, TheKeysOfLayersDrawnAreDescribed) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
   const TemporaryFolder folder;
-  const json drawn = written({"layers",
-                              "demo:glass",
-                              "--frames",
-                              "0",
-                              "--width",
-                              "32",
-                              "--height",
-                              "18",
-                              "--without",
-                              "3",
-                              "--image",
-                              folder.file("image.png"),
-                              "--by-distance",
-                              folder.file("distance.png"),
-                              "--depth-of-field",
-                              "layers",
-                              "--focus",
-                              "3",
-                              "--aperture",
-                              "0.05",
-                              "--reference-passes",
-                              "2",
-                              "--blurred",
-                              folder.file("blurred.png"),
-                              "--compare",
-                              folder.file("compare.png"),
-                              "--svg",
-                              folder.file("lines.svg"),
-                              "--pdf",
-                              folder.file("lines.pdf"),
-                              "--line-picture",
-                              folder.file("lines.png")});
+  const json drawn = toolJson({"layers",
+                               "demo:glass",
+                               "--frames",
+                               "0",
+                               "--width",
+                               "32",
+                               "--height",
+                               "18",
+                               "--without",
+                               "3",
+                               "--image",
+                               folder.file("image.png"),
+                               "--by-distance",
+                               folder.file("distance.png"),
+                               "--depth-of-field",
+                               "layers",
+                               "--focus",
+                               "3",
+                               "--aperture",
+                               "0.05",
+                               "--reference-passes",
+                               "2",
+                               "--blurred",
+                               folder.file("blurred.png"),
+                               "--compare",
+                               folder.file("compare.png"),
+                               "--svg",
+                               folder.file("lines.svg"),
+                               "--pdf",
+                               folder.file("lines.pdf"),
+                               "--line-picture",
+                               folder.file("lines.png")});
   for (const char* key : {"picture", "lens", "drawing", "line_picture"}) {
     EXPECT_TRUE(drawn["frames"][0].contains(key)) << key;
   }
@@ -140,11 +132,11 @@ TEST(Formats, UnknownKeysOfPathsAndPointsAreIgnored) {
   const std::string path =
       folder.write("path.json", R"({"author":"me","width":64,"height":36,"frames":[)"
                                 R"({"eye":[0,2,0],"forward":[0,0,-1],"time_us":5,"tags":{"a":1}}]})");
-  EXPECT_EQ(written({"cull", kCity, "--path", path})["frames"].size(), 1u);
+  EXPECT_EQ(toolJson({"cull", kCity, "--path", path})["frames"].size(), 1u);
   const std::string file = folder.file("city.sight");
   ASSERT_EQ(runTool({"bake", kCity, "-o", file, "--depth", "1"}).code, 0);
   const std::string points = folder.write("points.json", R"({"unit":"m","points":[[0,2,0]]})");
-  EXPECT_EQ(written({"query", file, "--points", points})["points"].size(), 1u);
+  EXPECT_EQ(toolJson({"query", file, "--points", points})["points"].size(), 1u);
 }
 
 }  // namespace

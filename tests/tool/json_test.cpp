@@ -7,14 +7,10 @@ namespace {
 
 using nlohmann::json;
 
-json jsonOf(std::vector<std::string> arguments, int code = 0) {
-  arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
-  EXPECT_EQ(outcome.code, code) << outcome.err;
+json jsonOf(const std::vector<std::string>& arguments, int code = 0) {
+  const Outcome outcome = runTool(joined(arguments, {"--json", "-"}));
   EXPECT_EQ(outcome.err, "");
-  json parsed = parse(outcome.out);
-  EXPECT_TRUE(parsed.is_object()) << outcome.out.substr(0, 200);
-  return parsed;
+  return printedJson(outcome, code);
 }
 
 void expectKeys(const json& object, const std::vector<std::string>& keys) {

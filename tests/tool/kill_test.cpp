@@ -50,8 +50,7 @@ class KilledBake : public ::testing::Test {
       nap();
     }
     const Outcome outcome = bake.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    reference_parts_ = parse(outcome.out)["parts"];
+    reference_parts_ = printedJson(outcome)["parts"];
     reference_ = contents(file);
     ASSERT_FALSE(reference_.empty());
   }
@@ -116,9 +115,8 @@ TEST_F(KilledBake, KeepsAllPartsThatWereFinishedAndThereAreManyOfThem) {
     if (!std::filesystem::exists(file + ".parts")) {
       continue;  // it was complete, or had not begun
     }
-    const Outcome outcome = Started(toolWords(0, joined(arguments(file, "2"), {"--json", "-"}))).wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const nlohmann::json report = parse(outcome.out);
+    const nlohmann::json report =
+        printedJson(Started(toolWords(0, joined(arguments(file, "2"), {"--json", "-"}))).wait());
     EXPECT_GE(report["parts_before"].get<std::uint64_t>(), finished) << "seed " << kSeed;
     EXPECT_EQ(report["parts"].get<std::uint64_t>(), reference_parts_);
     EXPECT_TRUE(contents(file) == reference_) << "seed " << kSeed;
@@ -177,8 +175,7 @@ TEST_F(KilledBake, SaysWhatOfItsCheckpointIsAlteredAndBakesThatAloneAgain) {
     folder_.write("altered" + std::to_string(processes) + ".parts", parts);
     const Outcome outcome =
         Started(toolWords(processes, joined(arguments(file, "2"), {"--json", "-"}))).wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const std::uint64_t kept = parse(outcome.out)["parts_before"];
+    const std::uint64_t kept = printedJson(outcome)["parts_before"];
     EXPECT_GT(kept, 0u);
     EXPECT_NE(outcome.err.find("sightline: warning: " + file + ".parts: is damaged: 1 of " +
                                std::to_string(kept + 1) + " parts could not be read and is baked again\n"),

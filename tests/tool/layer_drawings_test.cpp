@@ -15,9 +15,7 @@ std::vector<std::string> with(const std::vector<std::string>& more) {
 }
 
 json drawn(const std::vector<std::string>& more) {
-  const Outcome outcome = runTool(with(more));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
+  return toolJson(with(more));
 }
 
 std::size_t countOf(const std::string& text, const std::string& word) {
@@ -31,7 +29,7 @@ std::size_t countOf(const std::string& text, const std::string& word) {
 TEST(LayerDrawings, AFrameIsDrawnAsSvgAndPdfOfThePicturesSize) {
   const TemporaryFolder folder;
   const std::string svg_file = folder.file("a.svg"), pdf_file = folder.file("a.pdf");
-  const json result = drawn({"--frames", "3", "--svg", svg_file, "--pdf", pdf_file, "--json", "-"});
+  const json result = drawn({"--frames", "3", "--svg", svg_file, "--pdf", pdf_file});
   const std::string svg = contents(svg_file), pdf = contents(pdf_file);
   EXPECT_NE(svg.find("width=\"320\" height=\"240\""), std::string::npos);
   // Parts keep their names.
@@ -53,11 +51,10 @@ TEST(LayerDrawings, AFrameIsDrawnAsSvgAndPdfOfThePicturesSize) {
 TEST(LayerDrawings, WhatIsSeenFirstHasSmallerGroups) {
   const TemporaryFolder folder;
   const auto drawingOf = [&](const char* arcs) {
-    const Outcome outcome =
-        runTool({"layers", "demo:building?floors=1&plants=5", "--frames", "0", "--width", "320", "--height",
-                 "180", "--arcs", arcs, "--svg", folder.file("a.svg"), "--no-times", "--json", "-"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out)["frames"][0]["drawing"];
+    const json result =
+        toolJson({"layers", "demo:building?floors=1&plants=5", "--frames", "0", "--width", "320", "--height",
+                  "180", "--arcs", arcs, "--svg", folder.file("a.svg"), "--no-times"});
+    return result["frames"][0]["drawing"];
   };
   const json hulls = drawingOf("all"), seen = drawingOf("seen");
   EXPECT_LT(seen["largest_group"], hulls["largest_group"]);
@@ -68,8 +65,8 @@ TEST(LayerDrawings, WhatIsSeenFirstHasSmallerGroups) {
 TEST(LayerDrawings, APlotHasNoFillsAndTestsMoreThanThePaintersForm) {
   const TemporaryFolder folder;
   const std::string painted = folder.file("a.svg"), plotted = folder.file("b.svg");
-  const json paint = drawn({"--frames", "0", "--svg", painted, "--json", "-"});
-  const json plot = drawn({"--frames", "0", "--plot", "--svg", plotted, "--json", "-"});
+  const json paint = drawn({"--frames", "0", "--svg", painted});
+  const json plot = drawn({"--frames", "0", "--plot", "--svg", plotted});
   EXPECT_GT(countOf(contents(painted), "fill=\"#ffffff\""), 40u);
   EXPECT_EQ(countOf(contents(plotted), "fill=\"#ffffff\""), 0u);
   const json &p = plot["frames"][0]["drawing"], &q = paint["frames"][0]["drawing"];
@@ -82,8 +79,7 @@ TEST(LayerDrawings, APlotHasNoFillsAndTestsMoreThanThePaintersForm) {
 TEST(LayerDrawings, KindsOfLinesAreChosen) {
   const TemporaryFolder folder;
   const auto lines = [&](const std::vector<std::string>& options) {
-    const json result =
-        drawn(joined({"--frames", "0", "--svg", folder.file("a.svg"), "--json", "-"}, options));
+    const json result = drawn(joined({"--frames", "0", "--svg", folder.file("a.svg")}, options));
     return result["frames"][0]["drawing"]["lines"].get<int>();
   };
   const int all = lines({});
@@ -94,7 +90,7 @@ TEST(LayerDrawings, KindsOfLinesAreChosen) {
 
 TEST(LayerDrawings, SeveralFramesAreSeveralFilesOfPartsThatMove) {
   const TemporaryFolder folder;
-  const json result = drawn({"--frames", "0:40:20", "--svg", folder.file("a.svg"), "--json", "-"});
+  const json result = drawn({"--frames", "0:40:20", "--svg", folder.file("a.svg")});
   ASSERT_EQ(result["frames"].size(), 2u);
   EXPECT_EQ(folder.entries(), 2u);
   EXPECT_EQ(result["frames"][1]["drawing"]["svg"], folder.file("a_0020.svg"));

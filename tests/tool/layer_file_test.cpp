@@ -222,10 +222,8 @@ TEST_F(LayerFile, LeavesOutAndReplacesAsThePictureDoes) {
 }
 
 TEST_F(LayerFile, EachFrameHasOneAndBadNamesAreRefused) {
-  const Outcome outcome = runTool({"layers", "demo:toothpicks?n=20", "--frames", "3:5", "--width", "80",
-                                   "--height", "45", "--layer-file", folder_.file("a.exr"), "--json", "-"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const json frames = parse(outcome.out)["frames"];
+  const json frames = toolJson({"layers", "demo:toothpicks?n=20", "--frames", "3:5", "--width", "80",
+                                "--height", "45", "--layer-file", folder_.file("a.exr")})["frames"];
   EXPECT_EQ(frames[1]["picture"]["layer_file"], folder_.file("a_0004.exr"));
   EXPECT_EQ(read(folder_.file("a_0003.exr")).description["frame"], 3);
   EXPECT_EQ(read(folder_.file("a_0004.exr")).description["frame"], 4);

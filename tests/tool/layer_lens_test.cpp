@@ -16,11 +16,9 @@ class LayerLens : public ::testing::Test {
 
   // The JSON for one frame of a small picture, unless `more` says otherwise.
   json drawn(const std::vector<std::string>& more) const {
-    const Outcome outcome = runTool(joined({"layers", "demo:toothpicks?n=40", "--width", "160", "--height",
-                                            "120", "--samples", "2", "--json", "-"},
-                                           more));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out)["frames"];
+    return toolJson(
+        joined({"layers", "demo:toothpicks?n=40", "--width", "160", "--height", "120", "--samples", "2"},
+               more))["frames"];
   }
   json lens(const std::vector<std::string>& more) const {
     return drawn(joined(more, {"--frames", "20", "--compare", folder_.file("compare.png")}))[0]["lens"];

@@ -83,10 +83,9 @@ TEST_F(LayerLinePicture, LinesEndWhereSomethingHidesThem) {
     const std::string scene = folder.write(
         "scene.obj", rectangle(0, 1.05, 1.05, 0.0) + rectangle(1, 3.05 * scale, 0.55 * scale, -10.0));
     const std::string path = folder.write("path.json", pathJson(orthographic)), file = folder.file("a.png");
-    const Outcome outcome = runTool({"layers", scene, "--path", path, "--line-picture", file, "--json", "-"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json result = toolJson({"layers", scene, "--path", path, "--line-picture", file});
     EXPECT_EQ(inkOf(file), expected) << orthographic;
-    const json picture = parse(outcome.out)["frames"][0]["line_picture"];
+    const json picture = result["frames"][0]["line_picture"];
     EXPECT_EQ(picture["lines"], 8);
     EXPECT_EQ(picture["ink"], expected.size());
     EXPECT_EQ(picture["file"], file);
@@ -101,9 +100,8 @@ TEST_F(LayerLinePicture, KindsOfLinesAreThoseOfDrawings) {
                                              "--width",        "320",
                                              "--height",       "240",
                                              "--svg",          folder.file("a.svg"),
-                                             "--line-picture", folder.file("a.png"),
-                                             "--json",         "-"};
-    return parse(runTool(joined(arguments, options)).out)["frames"][0];
+                                             "--line-picture", folder.file("a.png")};
+    return toolJson(joined(arguments, options))["frames"][0];
   };
   const json all = drawn({}), some = drawn({"--no-creases"});
   EXPECT_EQ(all["line_picture"]["lines"], all["drawing"]["lines"]);

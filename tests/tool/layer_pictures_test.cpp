@@ -24,9 +24,7 @@ class LayerPictures : public ::testing::Test {
 
   // The frames' JSON.
   json draw(const std::string& scene, const std::vector<std::string>& more) const {
-    const Outcome outcome = runTool(layersOf(scene, joined(more, {"--no-times", "--json", "-"})));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out)["frames"];
+    return toolJson(layersOf(scene, joined(more, {"--no-times"})))["frames"];
   }
   Image read(const std::string& name) const {
     const Result<Image> image = readPng(folder_.file(name));

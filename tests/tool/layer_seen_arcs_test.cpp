@@ -18,11 +18,9 @@ class LayerSeenArcs : public ::testing::Test {
 
   // The JSON of one frame, sorted by these arcs and drawn.
   json draw(const std::string& scene, const std::string& arcs) const {
-    const Outcome outcome = runTool({"layers", scene, "--width", "160", "--height", "90", "--frames", "60",
-                                     "--parts", "all", "--tints", "off", "--arcs", arcs, "--image",
-                                     folder_.file("out.png"), "--no-times", "--json", "-"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out)["frames"][0];
+    return toolJson({"layers", scene, "--width", "160", "--height", "90", "--frames", "60", "--parts", "all",
+                     "--tints", "off", "--arcs", arcs, "--image", folder_.file("out.png"),
+                     "--no-times"})["frames"][0];
   }
   Outcome refusal(const std::vector<std::string>& more) const {
     return runTool(joined({"layers", "demo:glass", "--frames", "60", "--arcs", "seen"}, more));

@@ -21,9 +21,7 @@ namespace {
 using nlohmann::json;
 
 json splitFrames(const std::vector<std::string>& more) {
-  const Outcome outcome = runTool(joined({"layers", "--no-times", "--json", "-"}, more));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
+  return toolJson(joined({"layers", "--no-times"}, more));
 }
 
 // The pieces of each divided part.

@@ -16,9 +16,7 @@ namespace {
 using nlohmann::json;
 
 json layered(const std::vector<std::string>& more) {
-  const Outcome outcome = runTool(joined({"layers", "--no-times", "--json", "-"}, more));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
+  return toolJson(joined({"layers", "--no-times"}, more));
 }
 
 std::set<std::set<int>> groupsOf(const json& frame) {

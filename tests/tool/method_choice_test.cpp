@@ -21,11 +21,8 @@ std::string optionOf(const MethodChoice& choice, const std::string& name) {
   return "";
 }
 
-json culled(std::vector<std::string> words) {
-  words.insert(words.begin(), "cull");
-  const Outcome outcome = runTool(joined(words, {"--frames", "0:400:100", "--no-times", "--json", "-"}));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return parse(outcome.out);
+json culled(const std::vector<std::string>& words) {
+  return toolJson(joined({"cull", "--frames", "0:400:100", "--no-times"}, words));
 }
 
 TEST(MethodChoice, IsFrustumCullingWhereNothingCanPay) {
@@ -122,10 +119,7 @@ TEST(MethodChoice, WalkAndVerifyChooseAmongOthers) {
   expectDocumented(walk, {"walk"});
   EXPECT_NE(contents(report + "/index.html").find("--method auto is "), std::string::npos);
 
-  const Outcome verified =
-      runTool(joined(joined({"verify"}, of), {"--width", "160", "--height", "90", "--json", "-"}));
-  ASSERT_EQ(verified.code, 0) << verified.err;
-  const json verify = parse(verified.out);
+  const json verify = toolJson(joined(joined({"verify"}, of), {"--width", "160", "--height", "90"}));
   EXPECT_EQ(verify["runs"][1]["chosen"], walk["runs"][2]["chosen"]);
   expectDocumented(verify, {"verify"});
 }

@@ -8,12 +8,14 @@ namespace {
 
 using nlohmann::json;
 
-json culledCity(std::vector<std::string> options) {
-  options.insert(options.begin(), {"cull", kCity, "--frames", "0:40:10", "--json", "-"});
-  const Outcome outcome = runTool(options);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+// What `cull` answers, which says nothing beside it.
+json culledQuietly(const std::vector<std::string>& scene, const std::vector<std::string>& options) {
+  const Outcome outcome = runTool(joined(joined({"cull", "--json", "-"}, scene), options));
   EXPECT_EQ(outcome.err, "");
-  return parse(outcome.out);
+  return printedJson(outcome);
+}
+json culledCity(const std::vector<std::string>& options) {
+  return culledQuietly({kCity, "--frames", "0:40:10"}, options);
 }
 
 std::vector<std::string> keysOf(const json& object) {
@@ -43,10 +45,8 @@ TEST(MethodOptions, AMethodShowsItsOwnOptionsOnly) {
 
 TEST(MethodOptions, ObjectsOfSeveralBoxesAreTheDepthPyramidsUnlessOneIsAskedFor) {
   const auto of = [](const std::string& method, const std::string& boxes) {
-    const Outcome outcome = runTool({"cull", "demo:building?floors=1", "--frames", "0:400:40", "--method",
-                                     method, "--object-boxes", boxes, "--json", "-"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const json cull = parse(outcome.out);
+    const json cull = toolJson({"cull", "demo:building?floors=1", "--frames", "0:400:40", "--method", method,
+                                "--object-boxes", boxes});
     std::size_t sum = 0;
     for (const json& frame : cull["frames"]) {
       sum += frame["visible"].size();
@@ -61,10 +61,8 @@ TEST(MethodOptions, ObjectsOfSeveralBoxesAreTheDepthPyramidsUnlessOneIsAskedFor)
 
 TEST(MethodOptions, WhereDrawingCostsNothingFramesAreCulledByTheFrustumAlone) {
   const auto givenUp = [](const std::string& option, const std::string& us) {
-    const Outcome outcome = runTool({"cull", "demo:building?floors=1", "--method", "depth-pyramid", option,
-                                     us, "--frames", "0:200", "--json", "-"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const json cull = parse(outcome.out);
+    const json cull = toolJson(
+        {"cull", "demo:building?floors=1", "--method", "depth-pyramid", option, us, "--frames", "0:200"});
     int sum = 0;
     for (const json& frame : cull["frames"]) {
       sum += frame["renderer"]["given_up"].get<int>();
@@ -130,15 +128,12 @@ TEST(MethodOptions, TheTextTellsWhatIsNotAsUsual) {
 }
 
 TEST(MethodOptions, AnOptionMultipliesOnlyTheMethodsThatHaveIt) {
-  const Outcome outcome =
-      runTool({"verify",       kCity,     "--frames",         "0",
-               "--width",      "64",      "--height",         "36",
-               "--aimed-rays", "1",       "--method",         "frustum,occlusion-tree,supporting-planes",
-               "--variant",    "FSE,FME", "--occluders",      "area-angle,database",
-               "--joint",      "on,off",  "--detail-objects", "on,off",
-               "--json",       "-"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const json runs = parse(outcome.out)["runs"];
+  const json runs =
+      toolJson({"verify",       kCity,     "--frames",         "0",
+                "--width",      "64",      "--height",         "36",
+                "--aimed-rays", "1",       "--method",         "frustum,occlusion-tree,supporting-planes",
+                "--variant",    "FSE,FME", "--occluders",      "area-angle,database",
+                "--joint",      "on,off",  "--detail-objects", "on,off"})["runs"];
   EXPECT_EQ(runs.size(), 1u + 2u * 2u * 2u + 2u * 2u * 2u);
   for (const json& run : runs) {
     EXPECT_EQ(run["options"].contains("joint"), run["method"] == "supporting-planes");
@@ -216,19 +211,16 @@ TEST(MethodOptions, SupportingPlanesAreTheSameWithAnyThreads) {
 
 TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
   for (const std::string scene : {"demo:city?copies=1", "demo:building?floors=2"}) {
-    const Outcome outcome = runTool({"verify",      scene,
-                                     "--method",    "supporting-planes",
-                                     "--occluders", "area-angle,database",
-                                     "--joint",     "on,off",
-                                     "--planes",    "through-eye,through-box",
-                                     "--hierarchy", "kd,bvh",
-                                     "--coherence", "on,off",
-                                     "--frames",    "0:400:100",
-                                     "--width",     "160",
-                                     "--height",    "90",
-                                     "--json",      "-"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json runs = parse(outcome.out)["runs"];
+    const json runs = toolJson({"verify",      scene,
+                                "--method",    "supporting-planes",
+                                "--occluders", "area-angle,database",
+                                "--joint",     "on,off",
+                                "--planes",    "through-eye,through-box",
+                                "--hierarchy", "kd,bvh",
+                                "--coherence", "on,off",
+                                "--frames",    "0:400:100",
+                                "--width",     "160",
+                                "--height",    "90"})["runs"];
     ASSERT_EQ(runs.size(), 8u * 3u) << "coherence is of planes through boxes";
     for (const json& run : runs) {
       EXPECT_EQ(run["false_culls"], 0) << scene << " " << run["options"] << " " << run["witnesses"];
@@ -272,10 +264,9 @@ TEST(MethodOptions, BakedViewpointsLieNearThePathThatBakeWasGiven) {
     const Outcome baked =
         runTool(joined({"bake", scene, "-o", file, "--depth", "1", "--databases", "minimum-sets"}, options));
     EXPECT_EQ(baked.code, 0) << baked.err;
-    const Outcome outcome = runTool(
-        {"cull", scene, "--baked", file, "--occluders", "minimum-sets", "--frames", "0", "--json", "-"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return parse(outcome.out)["viewpoints"]["minimum-sets"];
+    const json cull =
+        toolJson({"cull", scene, "--baked", file, "--occluders", "minimum-sets", "--frames", "0"});
+    return cull["viewpoints"]["minimum-sets"];
   };
   const json near_path = viewpoints({"--viewpoint-path", path, "--viewpoint-spacing", "3"});
   EXPECT_EQ(near_path["spacing"], 3.0);
@@ -300,12 +291,8 @@ class BakedMethods : public ::testing::Test {
     }();
     return made;
   }
-  static json culled(std::vector<std::string> options) {
-    options.insert(options.begin(), {"cull", kScene, "--baked", file(), "--json", "-"});
-    const Outcome outcome = runTool(options);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    return parse(outcome.out);
+  static json culled(const std::vector<std::string>& options) {
+    return culledQuietly({kScene, "--baked", file()}, options);
   }
 };
 
@@ -325,12 +312,11 @@ TEST_F(BakedMethods, TheOctreeTellsOfItsSets) {
 }
 
 TEST_F(BakedMethods, VisibleSetsAreAnOptionOfTheOtherMethods) {
-  const Outcome outcome =
-      runTool({"verify", kScene, "--baked", file(), "--frames", "0", "--width", "64", "--height", "36",
-               "--aimed-rays", "1", "--method", "frustum,occlusion-tree,depth-pyramid,visibility-octree",
-               "--visible-sets", "on,off", "--json", "-"});
-  const json runs = parse(outcome.out)["runs"];
-  ASSERT_EQ(runs.size(), 1u + 2u + 2u + 1u) << outcome.err;
+  const json runs =
+      toolJson({"verify", kScene, "--baked", file(), "--frames", "0", "--width", "64", "--height", "36",
+                "--aimed-rays", "1", "--method", "frustum,occlusion-tree,depth-pyramid,visibility-octree",
+                "--visible-sets", "on,off"})["runs"];
+  ASSERT_EQ(runs.size(), 1u + 2u + 2u + 1u);
   for (const json& run : runs) {
     const bool has = run["method"] == "occlusion-tree" || run["method"] == "depth-pyramid";
     EXPECT_EQ(run["options"].contains("visible_sets"), has) << run["method"];
@@ -371,13 +357,11 @@ TEST_F(BakedMethods, TheCellsAreAPath) {
 }
 
 TEST_F(BakedMethods, HideNothingVisibleAtTheBordersOfCells) {
-  const Outcome outcome =
-      runTool({"verify", kScene, "--baked", file(), "--path", "cells", "--frames",
-               test::sanitized() ? "0:500:20" : "0:500:10", "--width", "160", "--height", "90", "--method",
-               "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
-               "--visible-sets", "on", "--json", "-"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const json report = parse(outcome.out);
+  const json report =
+      toolJson({"verify", kScene, "--baked", file(), "--path", "cells", "--frames",
+                test::sanitized() ? "0:500:20" : "0:500:10", "--width", "160", "--height", "90", "--method",
+                "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
+                "--visible-sets", "on"});
   for (const json& run : report["runs"]) {
     EXPECT_EQ(run["false_culls"], 0) << run["method"] << " " << run["witnesses"];
   }

@@ -18,11 +18,9 @@ TEST(Tool, VerifyFindsNoFalseCullInOffCentreViews) {
   for (const std::string shift :
        {"", ",\"shift\":[0.6,-0.4]", ",\"shift\":[-2.5,0.5]", ",\"ortho_height\":40,\"shift\":[1,1]"}) {
     const std::string path = folder.write("walk.json", pathThroughTheCity(shift));
-    const Outcome outcome = runTool({"verify", "demo:city?copies=1", "--path", path, "--method",
-                                     "frustum,supporting-planes,occlusion-tree,opacity-map,depth-pyramid",
-                                     "--width", "160", "--height", "90", "--aimed-rays", "4", "--json", "-"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json verify = json::parse(outcome.out);
+    const json verify = toolJson({"verify", "demo:city?copies=1", "--path", path, "--method",
+                                  "frustum,supporting-planes,occlusion-tree,opacity-map,depth-pyramid",
+                                  "--width", "160", "--height", "90", "--aimed-rays", "4"});
     ASSERT_EQ(verify["runs"].size(), 5u);
     for (const json& run : verify["runs"]) {
       EXPECT_EQ(run["false_culls"], 0) << shift << run["method"];

@@ -80,9 +80,8 @@ TEST_F(HandmadeSight, IsAnsweredFromInWorldSpace) {
   }
   arguments.push_back(file_);
   const Outcome outcome = runTool(arguments);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  const json answer = parse(outcome.out);
+  const json answer = printedJson(outcome);
   EXPECT_EQ(answer["outside"], 3);
   ASSERT_EQ(answer["points"].size(), kExpected.size());
   for (std::size_t i = 0; i < kExpected.size(); ++i) {
@@ -106,14 +105,14 @@ TEST_F(HandmadeSight, SaysWhereNoViewerIsExpectedInACell) {
   const std::string partly = folder_.file("partly.sight");
   ASSERT_TRUE(writeSight(partly, baked));
   const auto pointOf = [](const std::string& file, const char* point) {
-    return parse(runTool({"query", file, "--points", point, "--json", "-"}).out)["points"][0];
+    return toolJson({"query", file, "--points", point})["points"][0];
   };
   EXPECT_EQ(pointOf(partly, "101,1,5"), pointOf(file_, "101,1,5"));
   const json beside = pointOf(partly, "103,1,5");
   EXPECT_EQ(beside["cell"], pointOf(file_, "103,1,5")["cell"]);
   EXPECT_EQ(beside["set"], json());
   EXPECT_EQ(beside["visible"].size(), 4u) << "all objects";
-  EXPECT_EQ(parse(runTool({"info", partly, "--json", "-"}).out)["partial_cells"], 15);
+  EXPECT_EQ(toolJson({"info", partly})["partial_cells"], 15);
 }
 
 TEST_F(HandmadeSight, IsAnsweredFromAlikeForFilesOfPointsAndCameraPaths) {
@@ -133,8 +132,7 @@ TEST_F(HandmadeSight, IsAnsweredFromAlikeForFilesOfPointsAndCameraPaths) {
 
 TEST_F(HandmadeSight, IsDescribed) {
   const Outcome outcome = runTool({"info", file_, "--json", "-"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const json info = parse(outcome.out);
+  const json info = printedJson(outcome);
   EXPECT_EQ(info["scene"], json({{"hash", "0000000000000007"}, {"objects", 4}, {"triangles", 100}}));
   EXPECT_EQ(info["settings"]["near_distance"], 0.5);
   EXPECT_EQ(info["min"], json({100.0, 0.0, 0.0}));

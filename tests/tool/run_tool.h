@@ -74,4 +74,18 @@ inline nlohmann::json parse(const std::string& text) {
   return nlohmann::json::parse(text, nullptr, false);
 }
 
+// Expects that the tool ended with this code and printed one JSON object, which is returned.
+inline nlohmann::json printedJson(const Outcome& outcome, int code = 0) {
+  EXPECT_EQ(outcome.code, code) << outcome.err;
+  nlohmann::json printed = parse(outcome.out);
+  EXPECT_TRUE(printed.is_object()) << outcome.out.substr(0, 200);
+  return printed;
+}
+
+// Runs the tool with these arguments and `--json -`, and returns what it prints.
+inline nlohmann::json toolJson(const std::vector<std::string>& arguments, int code = 0) {
+  SCOPED_TRACE(::testing::PrintToString(arguments));
+  return printedJson(runTool(joined(arguments, {"--json", "-"})), code);
+}
+
 }  // namespace sightline::tool_test

@@ -72,11 +72,7 @@ class UpdatedBake : public ::testing::Test {
   }
 
   // Bakes and returns the report.
-  json report(const std::vector<std::string>& arguments) const {
-    const Outcome outcome = runTool(joined(arguments, {"--json", "-"}));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return outcome.code == 0 ? json::parse(outcome.out) : json();
-  }
+  json report(const std::vector<std::string>& arguments) const { return toolJson(arguments); }
 
   void bakeFirst(const std::vector<std::string>& more = {}) {
     folder_.write("first.obj", objOf(rooms()));
@@ -167,9 +163,8 @@ TEST_F(UpdatedBake, IsTheSameWithSeveralProcesses) {
       Started(toolWords(2, bake("moved.obj", "new.sight",
                                 {"--update", folder_.file("first.sight"), "--json", "-"})))
           .wait();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json made = printedJson(outcome);
   EXPECT_TRUE(contents(folder_.file("new.sight")) == contents(folder_.file("full.sight")));
-  const json made = json::parse(outcome.out);
   EXPECT_LT(made["questions_asked"], made["questions"]) << made;
 }
 

@@ -39,8 +39,7 @@ class VerifyRegions : public ::testing::Test {
 
 TEST_F(VerifyRegions, ContradictsNothingThatIsTrueWhateverTheThreads) {
   const Outcome one = verify(file_, {"--pairs", "80", "--json", "-"});
-  EXPECT_EQ(one.code, 0) << one.out << one.err;
-  const json report = parse(one.out);
+  const json report = printedJson(one);
   EXPECT_EQ(report["pairs"], 80);
   EXPECT_EQ(report["false_culls"], 0);
   EXPECT_EQ(report["witnesses"], json::array());
@@ -62,8 +61,7 @@ TEST_F(VerifyRegions, ContradictsSetsFromWhichVisibleObjectsAreRemoved) {
   const Status written = writeSight(tampered, baked);
   ASSERT_TRUE(written) << written.error().message;
   const Outcome outcome = verify(tampered, {"--pairs", "80", "--json", "-", "--threads", "2"});
-  EXPECT_EQ(outcome.code, 1) << outcome.err;
-  const json report = parse(outcome.out);
+  const json report = printedJson(outcome, 1);
   ASSERT_GT(report["false_culls"], 0);
   EXPECT_EQ(report["false_culls"], report["witnesses"].size());
   expectDocumented(report, {"verify of a baked file's cells"});
