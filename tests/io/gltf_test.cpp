@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "src/io/gltf/gltf_uris.h"
 #include "tests/io/glb_builder.h"
 #include "tests/io/scene_checks.h"
 
@@ -52,6 +53,19 @@ TEST(Gltf, PrimitivesWithoutTrianglesMakeNoObject) {
   const Scene scene = imported(glb.bytes());
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_EQ(scene.object_names[0], "mixed/primitive5");
+}
+
+TEST(Gltf, NamesItsBuffersAndPicturesWhicheverItsContainer) {
+  Glb glb = oneTriangle();
+  glb.json["buffers"].push_back({{"uri", "a%20b.bin"}, {"byteLength", 1}});
+  glb.json["buffers"].push_back({{"uri", "data:application/octet-stream;base64,AAAA"}, {"byteLength", 3}});
+  glb.json["images"] = {{{"uri", "red.png"}}, {{"bufferView", 0}}, {{"uri", "100%.png"}}, 7};
+  const std::vector<std::string> expected{"a b.bin", "red.png", "100%.png"};
+  EXPECT_EQ(io::filesNamedByGltf(glb.bytes()), expected);
+  EXPECT_EQ(io::filesNamedByGltf(glb.json.dump()), expected);
+  EXPECT_EQ(io::filesNamedByGltf("\xef\xbb\xbf" + glb.json.dump()), expected) << "after a byte-order mark";
+  EXPECT_TRUE(io::filesNamedByGltf(glb.bytes().substr(0, 40)).empty());
+  EXPECT_TRUE(io::filesNamedByGltf("[1, 2]").empty());
 }
 
 TEST(Gltf, StripsAndFansCoverTheirAreaOnceAndFaceOneWay) {

@@ -7,16 +7,12 @@
 
 #include "sightline/io/file.h"
 #include "src/io/failure.h"
+#include "src/io/gltf/gltf_uris.h"
 
 namespace sightline::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-int valueOf(char digit, std::string_view digits) {
-  const std::size_t found = digits.find(digit);
-  return found == std::string_view::npos ? -1 : static_cast<int>(found);
-}
 
 std::optional<std::string> decodeBase64(std::string_view text) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -45,30 +41,6 @@ std::optional<std::string> decodeBase64(std::string_view text) {
     }
   }
   return bytes;
-}
-
-std::optional<std::string> decodePercent(std::string_view text) {
-  std::string decoded;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      decoded.push_back(text[i]);
-      continue;
-    }
-    constexpr std::string_view kHex = "0123456789abcdef";
-    const auto digit = [&](std::size_t at) {
-      return at < text.size()
-                 ? valueOf(static_cast<char>(std::tolower(static_cast<unsigned char>(text[at]))), kHex)
-                 : -1;
-    };
-    const int high = digit(i + 1);
-    const int low = digit(i + 2);
-    if (high < 0 || low < 0 || high * 16 + low == 0) {
-      return std::nullopt;
-    }
-    decoded.push_back(static_cast<char>(high * 16 + low));
-    i += 2;
-  }
-  return decoded;
 }
 
 Result<std::string> decodeDataUri(std::string_view uri, const std::string& where) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "sightline/io/file.h"
+#include "src/io/gltf/gltf_uris.h"
 
 namespace sightline::tool {
 namespace {
@@ -20,51 +19,6 @@ std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
-}
-
-// Decodes percent signs: "a%20b" -> "a b". A percent sign without two hexadecimal digits stays.
-std::string withoutPercents(const std::string& uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const bool number = uri[i] == '%' && i + 2 < uri.size() &&
-                        std::isxdigit(static_cast<unsigned char>(uri[i + 1])) != 0 &&
-                        std::isxdigit(static_cast<unsigned char>(uri[i + 2])) != 0;
-    text += number ? static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)) : uri[i];
-    i += number ? 2 : 0;
-  }
-  return text;
-}
-
-// The JSON of a .glb, which is its first chunk: it follows 12 bytes of header and the chunk's length and
-// kind.
-std::string_view jsonOfGlb(std::string_view bytes) {
-  constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
-  std::uint32_t length = 0;
-  if (bytes.size() < kJsonAt) {
-    return {};
-  }
-  std::memcpy(&length, bytes.data() + kLengthAt, sizeof(length));
-  return bytes.substr(kJsonAt, length);
-}
-
-std::vector<std::string> namesInGltf(const std::string& file, bool is_glb) {
-  std::vector<std::string> names;
-  const Result<std::string> bytes = readFile(file);
-  if (!bytes) {
-    return names;
-  }
-  const auto json = nlohmann::json::parse(is_glb ? jsonOfGlb(*bytes) : *bytes, nullptr, false);
-  for (const char* list : {"buffers", "images"}) {
-    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) {
-      continue;
-    }
-    for (const auto& item : json[list]) {
-      if (item.is_object() && item.contains("uri") && item["uri"].is_string()) {
-        names.push_back(withoutPercents(item["uri"].get<std::string>()));
-      }
-    }
-  }
-  return names;
 }
 
 // Calls act(keyword, value) for each line of a keyword and a value, both without spaces at their ends.
@@ -125,7 +79,8 @@ std::vector<std::string> sideFilesOf(const std::string& scene) {
   const std::string extension = lower(fs::path(scene).extension().string());
   std::vector<std::string> names;
   if (extension == ".gltf" || extension == ".glb") {
-    names = namesInGltf(scene, extension == ".glb");
+    const Result<std::string> bytes = readFile(scene);
+    names = bytes ? io::filesNamedByGltf(*bytes) : names;
   } else if (extension == ".obj") {
     names = namesInObj(scene);
   }
