@@ -20,6 +20,8 @@
 #include <numeric>
 #include <utility>
 
+#include "src/math/infinite_box.h"
+
 namespace sightline {
 namespace {
 
@@ -36,11 +38,6 @@ double areaOf(const Box& box) {
 Box both(Box a, const Box& b) {
   a.extend(b);
   return a;
-}
-
-Box infiniteBox() {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
 }
 
 class Inserter {
@@ -261,14 +258,14 @@ BoxTree buildBoxTree(std::span<const Box> object_bounds, std::span<const std::ui
   // A lone object without a proper box is a root and a leaf in one.
   const bool own_root = any_broken && object_bounds.size() > 1;
   if (own_root) {
-    flat.begin(infiniteBox());
+    flat.begin(math::infiniteBox());
   }
   if (!order.empty()) {
     flat.all(inserter);
   }
   for (std::uint32_t i = 0; any_broken && i < object_bounds.size(); ++i) {
     if (!object_bounds[i].wellFormed()) {
-      flat.leaf(infiniteBox(), ObjectId(i));
+      flat.leaf(math::infiniteBox(), ObjectId(i));
     }
   }
   if (own_root) {

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "src/hierarchy/builder.h"
+#include "src/math/infinite_box.h"
 
 namespace sightline {
 namespace hierarchy {
-namespace {
-
-Box infiniteBox() {
-  const float inf = std::numeric_limits<float>::infinity();
-  return {{-inf, -inf, -inf}, {inf, inf, inf}};
-}
-
-}  // namespace
-
 HierarchyNode FlatWriter::enclosing(std::span<const Item> items) const {
   HierarchyNode node;
   std::uint64_t cost = 0;
@@ -24,7 +15,7 @@ HierarchyNode FlatWriter::enclosing(std::span<const Item> items) const {
     if (item.box.wellFormed()) {
       node.bounds.extend(item.box);
     } else {
-      node.bounds = infiniteBox();
+      node.bounds = math::infiniteBox();
     }
     cost += object_cost_.empty() ? 1u : object_cost_[item.object.value];
   }

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "src/math/outer_box.h"
 #include "src/scene/cell_grid.h"
 #include "src/scene/grid_divisions.h"
 #include "src/scene/like_objects.h"
@@ -19,15 +20,6 @@ using scene::CellGrid;
 using scene::DivisionTree;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float roundedDown(double v) {
-  const float f = static_cast<float>(v);
-  return f > v ? std::nextafter(f, -kInfinity) : f;
-}
-float roundedUp(double v) {
-  const float f = static_cast<float>(v);
-  return f < v ? std::nextafter(f, kInfinity) : f;
-}
 
 // A part of a triangle between planes across the axes: a convex polygon.
 class Piece {
@@ -191,12 +183,8 @@ Box Divider::boundsWithin(const Box& box, std::uint32_t t) {
     min = sightline::min(min, corner);
     max = sightline::max(max, corner);
   }
-  Box reached;
-  for (int axis = 0; axis < 3 && !piece_.corners().empty(); ++axis) {
-    reached.min[axis] = std::max(roundedDown(min[axis] - slack_), box.min[axis]);
-    reached.max[axis] = std::min(roundedUp(max[axis] + slack_), box.max[axis]);
-  }
-  return reached;
+  const Vec3d slack(slack_, slack_, slack_);
+  return piece_.corners().empty() ? Box{} : intersection(math::outerBox(min - slack, max + slack), box);
 }
 
 Box Divider::halve(std::size_t begin, std::size_t end, const Box& half, const Cut& cut, bool upper) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/math/frustum.h"
+#include "src/math/infinite_box.h"
 #include "src/occlusion/boxes/pixel_boxes.h"
 #include "src/scene/usable_view.h"
 #include "src/world/culler_impl.h"
@@ -26,8 +27,7 @@ constexpr float kAnyDepth = -std::numeric_limits<float>::infinity();  // recipro
 Box boxAround(const View& view) {
   Box box;
   if (!std::isfinite(view.z_far)) {
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    return {{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};
+    return math::infiniteBox();
   }
   const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   double size = 0.0;

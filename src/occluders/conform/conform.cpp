@@ -10,14 +10,13 @@
 #include "src/occluders/conform/conform.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "sightline/math/box.h"
 #include "src/base/parts.h"
 #include "src/base/rows.h"
+#include "src/math/outer_box.h"
 #include "src/occluders/conform/close_cracks.h"
 #include "src/occluders/conform/conform_contacts.h"
 #include "src/occluders/conform/conform_pairs.h"
@@ -32,12 +31,6 @@ enum class Role : std::uint8_t { kTaking, kUntouched, kDegenerate };  // part in
 
 constexpr std::uint32_t kSplitsOfPart = 64;
 constexpr std::uint32_t kNone = 0xffffffffu;
-
-float below(double value) {
-  const auto rounded = static_cast<float>(value);
-  return double{rounded} > value ? std::nextafterf(rounded, -std::numeric_limits<float>::infinity())
-                                 : rounded;
-}
 
 class Conforming {
  public:
@@ -87,8 +80,7 @@ class Conforming {
     base::forEach(parallel_for_, numbers.size(), [&](std::uint32_t i) {
       for (int k = 0; k < 3; ++k) {
         const Vec3d& at = scene_.vertices[scene_.corners(numbers[i])[k]];
-        boxes[i].extend(Vec3f{below(at.x), below(at.y), below(at.z)});
-        boxes[i].extend(Vec3f{-below(-at.x), -below(-at.y), -below(-at.z)});
+        boxes[i].extend(math::outerBox(at, at));
       }
     });
     const BoxPairs pairs(boxes, numbers);

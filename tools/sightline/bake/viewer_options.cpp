@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "sightline/pvs/bake/viewer_space.h"
+#include "src/math/outer_box.h"
 #include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/input/load.h"
 
@@ -30,19 +30,8 @@ std::vector<double> parseRegion(const std::string& text) {
 
 // The box in scene space, rounded outwards.
 Box boxOf(const std::vector<double>& region, const Vec3d& origin) {
-  const Vec3d min = Vec3d(region[0], region[1], region[2]) - origin;
-  const Vec3d max = Vec3d(region[3], region[4], region[5]) - origin;
-  Box box{Vec3f(min), Vec3f(max)};
-  constexpr float kFar = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (static_cast<double>(box.min[axis]) > min[axis]) {
-      box.min[axis] = std::nextafter(box.min[axis], -kFar);
-    }
-    if (static_cast<double>(box.max[axis]) < max[axis]) {
-      box.max[axis] = std::nextafter(box.max[axis], kFar);
-    }
-  }
-  return box;
+  return math::outerBox(Vec3d(region[0], region[1], region[2]) - origin,
+                        Vec3d(region[3], region[4], region[5]) - origin);
 }
 
 std::vector<Box> regionsOf(const ViewerOptions& options, const Vec3d& origin) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "src/math/infinite_box.h"
 #include "src/math/longest_axis.h"
 
 namespace sightline::pvs {
@@ -93,11 +94,8 @@ bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, co
 }
 
 Box RegionOcclusion::takeFollowed() {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Box followed = fused_.takeFollowed();
-  return std::exchange(narrowed_or_divided_, false)
-             ? Box{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}}
-             : followed;
+  return std::exchange(narrowed_or_divided_, false) ? math::infiniteBox() : followed;
 }
 
 RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget target,
