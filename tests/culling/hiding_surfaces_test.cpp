@@ -8,6 +8,7 @@
 #include "scenes/procedural.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/culling/opacity_map_method.h"
 #include "tests/culling/culled_scene.h"
 #include "tests/oracle/hand_made.h"
 
@@ -111,6 +112,34 @@ TEST(HidingSurfaces, AFastTurnKeepsAboutWhatAViewAloneKeeps) {
     kept_alone += alone.visible().size();
   }
   EXPECT_LT(kept, kept_alone * 5 / 4);
+}
+
+TEST(HidingSurfaces, ADoorHidesTheRoomWhileItIsShut) {
+  Scene door, scene;
+  addWall(door, addMaterial(door, Opacity::kOpaque, true), 0.0f, -20.0f, 20.0f, -20.0f, 20.0f);
+  const SurfaceSet surfaces = findSurfaces(door.view());
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), -20.0f, -1.0f, 1.0f, -1.0f, 1.0f);
+  const std::vector<Box> bounds{scene.objects[0].bounds};
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});
+  Mat4 shut, open;
+  shut(2, 3) = open(2, 3) = -10.0;
+  // Opened, it is turned about its height and stands beside the view.
+  open(0, 3) = -5.0;
+  open(0, 0) = open(2, 2) = 0.0;
+  open(2, 0) = -1.0;
+  open(0, 2) = 1.0;
+  for (const bool pyramid : {false, true}) {
+    OpacityMapMethodSettings drawing;
+    drawing.surfaces = SurfaceUse::kAlone;
+    Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds},
+                  pyramid ? depthPyramid() : opacityMap(drawing));
+    for (const bool is_shut : {true, false, true, true}) {
+      const MovingSurfaces moving{&surfaces, is_shut ? shut : open};
+      culler.cull(hand_made::frontView(), bounds, nullptr, std::span(&moving, 1));
+      EXPECT_EQ(culler.visible().empty(), is_shut) << pyramid;
+      EXPECT_EQ(culler.dynamicStates()[0] == Visibility::kHidden, is_shut) << pyramid;
+    }
+  }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "scenes/procedural.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/occluders/triangle_soup.h"
+#include "tests/occlusion/made_surfaces.h"
 #include "tests/support/cut_work.h"
 #include "tests/support/rounds.h"
 #include "tests/support/solids.h"
@@ -226,6 +227,42 @@ TEST(FindSurfaces, APartThatIsHalfFullEndsAtAJunction) {
   };
   EXPECT_EQ(partsOf(5), 1u);
   EXPECT_EQ(partsOf(15), 2u);
+}
+
+TEST(FindSurfaces, EveryTriangleIsInOneClusterAndChainsAreItsBoundary) {
+  const Scene scene = test::sheet(
+      13, 20.0f, 10.0f, [](float x, float y) { return std::sin(x) + std::cos(3.0f * y); },
+      [](std::uint32_t t) { return t % 11 == 0; });
+  const SurfaceSet set =
+      findSurfaces(scene.view(), {.part_triangles = 50, .patch_triangles = 20, .cluster_triangles = 7});
+  EXPECT_EQ(set.triangles.size(), scene.view().indices.size());
+  // The signed edges of each cluster, from its triangles and from its chains.
+  using Edge = std::array<float, 6>;
+  for (std::uint32_t c = 0; c < set.clusters.size(); ++c) {
+    std::map<Edge, int> edges;
+    const auto add = [&](const Vec3f& a, const Vec3f& b, int value) {
+      edges[{a.x, a.y, a.z, b.x, b.y, b.z}] += value;
+      edges[{b.x, b.y, b.z, a.x, a.y, a.z}] -= value;
+    };
+    EXPECT_LE(set.clusters[c].triangle_count, 7u);
+    const auto corners = set.trianglesOf(set.clusters[c]);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        add(set.vertices[corners[i + k]], set.vertices[corners[i + (k + 1) % 3]], 1);
+      }
+    }
+    for (const std::uint32_t number : set.chainsOf(set.clusters[c])) {
+      const auto vertices = set.verticesOf(set.chains[number]);
+      for (const ChainUse& use : set.usesOf(set.chains[number])) {
+        for (std::size_t i = 1; use.cluster == c && i < vertices.size(); ++i) {
+          add(vertices[i - 1], vertices[i], -use.value);
+        }
+      }
+    }
+    for (const auto& [edge, value] : edges) {
+      EXPECT_EQ(value, 0) << "cluster " << c;
+    }
+  }
 }
 
 }  // namespace
