@@ -15,6 +15,7 @@
 #include "scenes/procedural.h"
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline::bench {
 
@@ -25,10 +26,9 @@ struct BenchmarkScene {
   std::vector<std::uint32_t> cost;  // triangles
 
   explicit BenchmarkScene(Scene source) : scene(std::move(source)) {
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-      cost.push_back(object.triangleCount());
-    }
+    test::ObjectArrays objects(scene);
+    bounds = std::move(objects.boxes);
+    cost = std::move(objects.triangles);
     if (!scene.paths.empty()) {
       path = scene.paths[0];
     }

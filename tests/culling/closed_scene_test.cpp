@@ -18,6 +18,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/oracle/hand_made.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline {
 namespace {
@@ -33,12 +34,9 @@ struct ClosedCulling {
       : closed(closeCracks(scene.view(), width)),
         surfaces(findSurfaces(closed.view(scene.view()))),
         occluders(findOccluders(closed.view(scene.view()))),
-        boxes(findObjectBoxes(closed.view(scene.view()), {.min_saving = 0.0, .margin = closed.margin()})) {
-    for (const Object& object : closed.objects) {
-      bounds.push_back(object.bounds);
-    }
-    hierarchy = buildHierarchy(bounds, {});
-  }
+        boxes(findObjectBoxes(closed.view(scene.view()), {.min_saving = 0.0, .margin = closed.margin()})),
+        bounds(test::boxesOf(closed.objects)),
+        hierarchy(buildHierarchy(bounds, {})) {}
 
   std::vector<ObjectId> kept(const View& view, bool pyramid) const {
     Culler culler({.hierarchy = &hierarchy,

@@ -9,6 +9,7 @@
 #include "scenes/procedural.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "tests/support/cut_off.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline {
 namespace {
@@ -18,13 +19,7 @@ struct CityHierarchy {
   std::uint32_t objects = static_cast<std::uint32_t>(scene.objects.size());
 
   Hierarchy build(HierarchyKind kind) const {
-    std::vector<Box> bounds;
-    for (const Object& object : scene.objects) {
-      bounds.push_back(object.bounds);
-    }
-    HierarchySettings settings;
-    settings.kind = kind;
-    return buildHierarchy(bounds, {}, settings);
+    return buildHierarchy(test::boxesOf(scene.objects), {}, {.kind = kind});
   }
 };
 

@@ -16,6 +16,7 @@
 #include "sightline/hierarchy/hierarchy.h"
 #include "src/base/byte_stream.h"
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline::database_bytes {
 
@@ -36,12 +37,11 @@ struct Model {
 inline Model modelOf(const Scene& scene) {
   Model model;
   model.set = findOccluders(scene.view());
-  std::vector<Box> bounds;
-  for (const Object& object : scene.objects) {
-    bounds.push_back(object.bounds);
-    model.bounds.extend(object.bounds);
+  const std::vector<Box> boxes = test::boxesOf(scene.objects);
+  for (const Box& box : boxes) {
+    model.bounds.extend(box);
   }
-  model.kd_tree = buildHierarchy(bounds, {}, {.kind = HierarchyKind::kKdTree});
+  model.kd_tree = buildHierarchy(boxes, {}, {.kind = HierarchyKind::kKdTree});
   return model;
 }
 

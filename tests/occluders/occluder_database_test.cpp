@@ -11,6 +11,7 @@
 #include "scenes/procedural.h"
 #include "tests/occluders/flat_mesh.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/object_arrays.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {
@@ -34,9 +35,7 @@ struct Model {
 Model modelOf(const Scene& scene) {
   Model model;
   model.set = findOccluders(scene.view());
-  for (const Object& object : scene.objects) {
-    model.bounds.push_back(object.bounds);
-  }
+  model.bounds = test::boxesOf(scene.objects);
   model.buildTree();
   return model;
 }

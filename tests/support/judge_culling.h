@@ -13,6 +13,7 @@
 #include "sightline/occluders/occluder_database.h"
 #include "tests/support/any_culler.h"
 #include "tests/support/hostile_scenes.h"
+#include "tests/support/object_arrays.h"
 
 namespace sightline::test {
 
@@ -34,10 +35,11 @@ struct JudgeCounts {
 class CullingJudge {
  public:
   CullingJudge(const HostileScene& hostile, std::uint64_t seed, std::uint32_t max_steps = 400)
-      : hostile_(hostile), scene_(hostile.scene.view()), random_(~seed), max_steps_(max_steps) {
-    for (const Object& object : scene_.objects) {
-      bounds_.push_back(object.bounds);
-    }
+      : hostile_(hostile),
+        scene_(hostile.scene.view()),
+        random_(~seed),
+        max_steps_(max_steps),
+        bounds_(boxesOf(scene_.objects)) {
     const bool moves = !hostile.may_move.empty() && chance(3);
     static_occluders_ = occludersOf(moves, true);
     moving_occluders_ = moves ? occludersOf(true, false) : OccluderSet{};
