@@ -24,7 +24,6 @@ struct DepthPyramid::Impl {
   bool finished = false;
   OutlineView view;
   BoxProjection projection;
-  DepthPyramidStats stats;
 
   std::span<const DepthLevel> usableLevels() const {
     return finished ? levels.levels() : std::span<const DepthLevel>();
@@ -63,14 +62,12 @@ void DepthPyramid::begin(const View& view, const ViewerRegion& viewers) {
   impl_->view = OutlineView(PixelView(view, buffer.width, buffer.height));
   impl_->projection = BoxProjection(impl_->view.view, buffer.width, buffer.height);
   impl_->finished = false;
-  impl_->stats.raster = impl_->raster.stats();
 }
 
 void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
                         const ParallelFor& parallel_for) {
   impl_->finished = false;
   impl_->raster.draw(set, chosen, parallel_for);
-  impl_->stats.raster = impl_->raster.stats();
 }
 
 void DepthPyramid::reserve(const SurfaceSet& surfaces) {
@@ -172,8 +169,8 @@ DepthBufferView DepthPyramid::depthBuffer() const {
 const SurfaceStats& DepthPyramid::surfaceStats() const {
   return impl_->raster.surfaceStats();
 }
-const DepthPyramidStats& DepthPyramid::stats() const {
-  return impl_->stats;
+const RasterStats& DepthPyramid::stats() const {
+  return impl_->raster.stats();
 }
 std::span<const OccluderId> DepthPyramid::occluders() const {
   return impl_->raster.occluders();

@@ -81,7 +81,13 @@ class Boxes {
     surfaces_.begin(frame);
     maps_->begin();
     left_ = kept_;
-    maps_->refine(buffer_, frame, surfaces_, work, stats, changes, left_);
+    maps_->refine({.buffer = buffer_,
+                   .frame = frame,
+                   .surfaces = surfaces_,
+                   .surface_work = work,
+                   .traversal = stats,
+                   .changes_fast = changes},
+                  left_);
     return maps_->hidden();
   }
   std::uint32_t windows() const { return maps_->windows(); }

@@ -19,10 +19,6 @@ struct DepthPyramidSettings {
   RasterSettings raster{};
 };
 
-struct DepthPyramidStats {
-  RasterStats raster{};
-};
-
 inline constexpr std::uint32_t kManyPixels = 0xffffffffu;  // see DepthPyramid::openPixels
 
 struct BoxAnswer {
@@ -118,7 +114,7 @@ class DepthPyramid {
   // The number of levels; level 0 is the depth buffer itself.
   std::uint32_t levels() const;
   DepthBufferView depthBuffer() const;
-  const DepthPyramidStats& stats() const;
+  const RasterStats& stats() const;  // of its depth buffer
   const SurfaceStats& surfaceStats() const;
   std::span<const OccluderId> occluders() const;
 

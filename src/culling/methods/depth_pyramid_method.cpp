@@ -65,13 +65,19 @@ class DepthPyramidMethod final : public CullingMethod {
     const culling::TraversalOptions options = culling::optionsOf(frame, skips);
     surfaces_.traverse(*pyramid_, stats, visible, Asking{*this, frame, options});
     if (focus_ && frame.test_objects) {
-      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, surfaces_.changesFast(), visible);
+      focus_->refine({.buffer = *pyramid_,
+                      .frame = frame,
+                      .surfaces = surfaces_,
+                      .surface_work = work_,
+                      .traversal = stats,
+                      .changes_fast = surfaces_.changesFast()},
+                     visible);
     }
   }
 
   void finish(CullStats& stats) override {
     surfaces_.finish(stats);
-    const RasterStats& raster = pyramid_->stats().raster;
+    const RasterStats& raster = pyramid_->stats();
     stats.occluders = raster.occluders;
     statistics_[0].value = raster.hidden;
     statistics_[1].value = focus_ ? focus_->windows() : 0;

@@ -59,11 +59,12 @@ void FocusMaps::begin() {
   hidden_ = 0;
 }
 
-void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-                       double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible) {
-  const double occluders = buffer.stats().raster.occluders, tests = stats.nodes_tested + stats.objects_tested;
-  budget_.view(work + kOccluderWork * occluders + kTestWork * tests, static_cast<double>(visible.size()));
-  const bool searches = !coherent_ || frame.jumped || changes || search_in_ == 0;
+void FocusMaps::refine(const CulledView& view, std::vector<ObjectId>& visible) {
+  const double occluders = view.buffer.stats().occluders,
+               tests = view.traversal.nodes_tested + view.traversal.objects_tested;
+  budget_.view(view.surface_work + kOccluderWork * occluders + kTestWork * tests,
+               static_cast<double>(visible.size()));
+  const bool searches = !coherent_ || view.frame.jumped || view.changes_fast || search_in_ == 0;
   makeRoom(asked_, visible.size());
   makeRoom(boxes_, visible.size());
   makeRoom(counts_, visible.size());
@@ -72,14 +73,14 @@ void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, co
   makeRoom(shown_, visible.size());
   makeRoom(pixels_, visible.size() * kMaxPixels);
   makeRoom(ranges_, kMaxPixels);
-  findDoubts(buffer, visible, searches);
-  drawWindows(frame, surfaces, visible);
+  findDoubts(view.buffer, visible, searches);
+  drawWindows(view.frame, view.surfaces, visible);
   removeHidden(visible);
   if (window_count_ == 0) {
     budget_.idle();
   }
   if (searches) {
-    const bool found = window_count_ > 0 || frame.jumped;
+    const bool found = window_count_ > 0 || view.frame.jumped;
     search_views_ = found ? kSearchViews : std::min(2 * search_views_, kMaxSearchViews);
     search_in_ = search_views_;
   }

@@ -35,10 +35,17 @@ class FocusMaps {
 
   // A view begins: it has no windows yet.
   void begin();
-  // Removes those of the visible objects that finer buffers hide. work: of the surfaces in the view's buffer.
-  // stats: of the traversal that found the objects. changes: many of them are new.
-  void refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-              double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible);
+  // A view that was culled by its own depth buffer.
+  struct CulledView {
+    const DepthPyramid& buffer;
+    const CullingFrame& frame;
+    const SurfaceDrawer& surfaces;
+    double surface_work = 0.0;   // of the surfaces in the buffer
+    const CullStats& traversal;  // which found the visible objects
+    bool changes_fast = false;   // many of them are new
+  };
+  // Removes those of the visible objects that finer buffers hide.
+  void refine(const CulledView& view, std::vector<ObjectId>& visible);
   // Sets the answers for those boxes to kHidden that the windows of refine() hide, where the middle of their
   // rectangle is in a window.
   void classify(const DepthPyramid& buffer, std::span<const Box> boxes, std::span<BoxAnswer> answers);
