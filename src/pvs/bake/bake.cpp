@@ -1,53 +1,27 @@
 #include "sightline/pvs/bake/bake.h"
 
 #include <algorithm>
-#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "sightline/pvs/bake/write_sight.h"
 #include "src/base/byte_stream.h"
-#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/bake_data.h"
+#include "src/pvs/bake/bake_settings.h"
 #include "src/pvs/bake/cell_tree.h"
-#include "src/pvs/bake/file/assemble_parts.h"
-#include "src/pvs/bake/file/byte_budget.h"
-#include "src/pvs/bake/file/flatten.h"
 #include "src/pvs/bake/file/packed_bytes.h"
 #include "src/pvs/bake/file/part_code.h"
 #include "src/pvs/bake/file/run_code.h"
-#include "src/pvs/bake/file/write_parts.h"
 #include "src/pvs/bake/update/earlier_bake.h"
 #include "src/pvs/bake/update/recall.h"
-#include "src/pvs/format/checksum.h"
 #include "src/pvs/format/witness_code.h"
 
 namespace sightline {
 
 using namespace pvs;
 
-struct Bake::Data {
-  Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
-       const ParallelFor& parallel_for)
-      : scene(view, occluders, settings, parallel_for), scene_id(sceneId(view)) {
-    if (const std::uint64_t count = scene.mostLeaves({}, kMaxCounted + 1); count <= kMaxCounted) {
-      max_cells = count;
-    }
-  }
-
-  // How much of the bake a cell with all below it is, 0 to 1.
-  double shareOf(const OctreeCell& cell) const;
-
-  BakeScene scene;
-  SceneId scene_id;
-  std::optional<std::uint64_t> max_cells;  // Bake::maxCells
-  std::uint64_t hash = 0;
-};
-
 namespace {
-
-constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
 
 // Limits of a part that is more than one cell: how many cells may be below its own, and about how much work
 // (CellOutcome::work) they may be, some 40 milliseconds. So an interrupted bake loses little, many processes
@@ -78,48 +52,6 @@ bool staysOnePart(const BakeScene& scene, const OctreeCell& cell, const CellOutc
   return cellsBelow(scene, cell, affordable) <= affordable;
 }
 
-// Each group of doors has surfaces of its own in memory.
-constexpr std::size_t kMostFusedGroups = 256;
-
-std::string problemWith(const BakeSettings& s) {
-  const auto usable = [](double value, double min, double max) { return value >= min && value <= max; };
-  if (s.max_depth > kMaxOctreeDepth && s.max_depth != BakeSettings::kChooseDepth) {
-    return "max_depth is " + std::to_string(s.max_depth) + "; at most " + std::to_string(kMaxOctreeDepth);
-  }
-  if (!usable(s.near_distance, 0.0, 1e12) || !usable(s.search_distance, 0.0, 1e12)) {
-    return "near_distance and search_distance are metres from 0 to 1e12";
-  }
-  if (s.occlusion == BakeOcclusion::kFused && doorGroupsOf(s.doors).groups.size() > kMostFusedGroups) {
-    return "there are more than " + std::to_string(kMostFusedGroups) +
-           " groups of doors (each door is one, and so are all together); name fewer, or use convex "
-           "occlusion";
-  }
-  if (!usable(s.occluder_size, 0.0, 1e6)) {
-    return "occluder_size is a factor from 0 to 1,000,000";
-  }
-  if (!usable(s.similarity, 0.0, 1.0) || !usable(s.min_gain, 0.0, 1.0) ||
-      !usable(s.merge_tolerance, 0.0, 1e6)) {
-    return "similarity and min_gain are from 0 to 1, merge_tolerance is 0 or greater";
-  }
-  if (s.divisions > kMaxDivisions) {
-    return "divisions is " + std::to_string(s.divisions) + "; at most " + std::to_string(kMaxDivisions);
-  }
-  if (s.narrowings > kMaxNarrowings) {
-    return "narrowings is " + std::to_string(s.narrowings) + "; at most " + std::to_string(kMaxNarrowings);
-  }
-  if (s.object_boxes == 0 || s.object_boxes > kMaxObjectBoxes) {
-    return "object_boxes is " + std::to_string(s.object_boxes) + "; from 1 to " +
-           std::to_string(kMaxObjectBoxes);
-  }
-  if (!usable(s.box_margin, 0.0, 1e12)) {
-    return "box_margin is metres from 0 to 1e12";
-  }
-  if (!std::all_of(s.viewers.begin(), s.viewers.end(), [](const Box& box) { return box.wellFormed(); })) {
-    return "a box of viewers is empty or not finite";
-  }
-  return {};
-}
-
 // The box around all objects that have a finite one; empty if none has.
 Box boundsOf(const SceneView& scene) {
   Box bounds;
@@ -139,44 +71,6 @@ double firstSearchDistance(const BakeScene& scene) {
     return scene.settings.search_distance;
   }
   return scene.hasManyObjects() ? scene.diagonal : 0.125 * scene.diagonal;
-}
-
-std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,
-                     std::uint32_t base_depth) {
-  base::ByteWriter bytes;
-  for (const std::uint64_t number :
-       {std::uint64_t{kBakeVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
-        static_cast<std::uint64_t>(s.occlusion), s.triangle_budget, std::uint64_t{s.max_depth},
-        std::uint64_t{base_depth}, std::uint64_t{s.divisions}, std::uint64_t{s.narrowings},
-        std::uint64_t{s.object_boxes}}) {
-    bytes.add(number);
-  }
-  for (const double number : {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain,
-                              s.merge_tolerance, s.box_margin}) {
-    bytes.add(number);
-  }
-  bytes.add(std::uint64_t{s.viewers.size()});
-  for (const Box& box : s.viewers) {
-    for (const float number : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}) {
-      bytes.add(number);
-    }
-  }
-  bytes.add(std::uint8_t{s.whole_cells});
-  const std::vector<std::vector<ObjectId>> groups = doorGroupsOf(s.doors).groups;
-  bytes.add(std::uint64_t{groups.size()});
-  for (const std::vector<ObjectId>& group : groups) {
-    bytes.add(std::uint64_t{group.size()});
-    for (const ObjectId door : group) {
-      bytes.add(door.value);
-    }
-  }
-  if (s.witnesses) {
-    bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
-  }
-  if (s.answers) {
-    bytes.add(std::uint8_t{2});
-  }
-  return pvs::checksumOf(bytes.take());
 }
 
 // The fraction of the region that lies in the cell. Axes along which the region has no extent do not count.
@@ -228,7 +122,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
     }
   }
   const auto data = std::make_shared<Data>(scene, occluders, complete, parallel_for);
-  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth());
+  data->hash = planHash(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth());
   Bake bake;
   bake.data_ = data;
   return bake;
@@ -454,154 +348,6 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
     }
   }
   return parts;
-}
-
-namespace {
-
-// Reads parts from those in memory, which must outlive the result.
-ReadPart readerOf(const BakedParts& parts) {
-  return [&parts](std::uint64_t id) {
-    const auto part = parts.find(id);
-    return part == parts.end() ? std::nullopt : std::optional(part->second);
-  };
-}
-
-Error brokenPart(std::uint64_t id) {
-  return Error{"bake: part " + std::to_string(id) + " is missing, broken or of another plan"};
-}
-
-// The result without cells and sets.
-BakedVisibility withoutCells(const BakeScene& scene, const SceneId& id) {
-  BakedVisibility baked;
-  baked.scene = id;
-  baked.record = {scene.settings.near_distance, scene.settings.triangle_budget, scene.settings.max_depth, {}};
-  baked.boxes = scene.boxes;
-  baked.octree.min = scene.root.min;
-  baked.octree.max = scene.root.max;
-  return baked;
-}
-
-// Reads parts as cells. The arguments must outlive the result.
-ReadCell cellReader(const Bake& bake, const BakeScene& scene, const ReadPart& read) {
-  return [&](std::uint64_t id) -> std::optional<PartCell> {
-    const std::optional<BakedPart> part = read(id);
-    if (!part || !bake.isPart(id, *part)) {
-      return std::nullopt;
-    }
-    const PartContent content = *contentOf(scene.settings, *part);  // which a part has
-    if (!witnessesOf(scene.settings, content)) {
-      return std::nullopt;
-    }
-    PartCell cell;
-    if (content.head.divided()) {
-      return soundlyDivided(scene, content) ? std::optional(std::move(cell)) : std::nullopt;
-    }
-    cell.cell = cellOf(scene, content);
-    return cell.cell ? std::optional(std::move(cell)) : std::nullopt;
-  };
-}
-
-// Calls visit(id, content) for all parts, by ascending id, up to the first that cannot be read or for which
-// visit is false: that one's id is returned, else 0.
-template <typename Visit>
-std::uint64_t forEachPart(const BakeScene& scene, const ReadPart& read, Visit&& visit) {
-  for (std::vector<std::uint64_t> level{kRootPart}; !level.empty();) {
-    std::vector<std::uint64_t> next;
-    for (const std::uint64_t id : level) {
-      const std::optional<BakedPart> part = read(id);
-      const std::optional<PartContent> content = part ? contentOf(scene.settings, *part) : std::nullopt;
-      if (!content || !visit(id, *content)) {
-        return id;
-      }
-      for (std::uint64_t i = 0; i < 8 && content->head.divided(); ++i) {
-        next.push_back(8 * id + i);
-      }
-    }
-    level = std::move(next);
-  }
-  return 0;
-}
-
-}  // namespace
-
-Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
-  return assemble(readerOf(parts));
-}
-
-Result<BakedVisibility> Bake::assemble(const ReadPart& read) const {
-  const BakeScene& scene = data_->scene;
-  std::uint64_t broken = 0;
-  const std::optional<BakedCell> top = cellOfParts(scene, cellReader(*this, scene, read), broken);
-  if (!top) {
-    return brokenPart(broken);
-  }
-  BakedVisibility baked = withoutCells(scene, data_->scene_id);
-  if (scene.settings.byte_budget == 0) {
-    flatten(*top, scene, baked);
-  } else if (const Status fits = fitBytes(scene, *top, scene.settings.byte_budget, baked); !fits) {
-    return Error{"bake: " + fits.error().message};
-  }
-  return baked;
-}
-
-Status Bake::writeSight(const std::string& file, const ReadPart& read, const SightExtras& extras) const {
-  const BakeScene& scene = data_->scene;
-  if (scene.settings.byte_budget > 0) {
-    Result<BakedVisibility> baked = assemble(read);
-    if (!baked) {
-      return baked.error();
-    }
-    baked->record.settings = extras.settings;
-    baked->databases = extras.databases;
-    return sightline::writeSight(file, *baked);
-  }
-  BakedVisibility baked = withoutCells(scene, data_->scene_id);
-  baked.record.settings = extras.settings;
-  baked.databases = extras.databases;
-  std::uint64_t broken = 0;
-  const Status written = writeParts(file, scene, cellReader(*this, scene, read), baked, broken);
-  return broken == 0 ? written : Status(brokenPart(broken));
-}
-
-Witnesses Bake::witnesses(const BakedParts& parts) const {
-  Result<Witnesses> found = witnesses(readerOf(parts));
-  return found ? std::move(*found) : Witnesses{};
-}
-
-Result<Witnesses> Bake::witnesses(const ReadPart& read) const {
-  const BakeScene& scene = data_->scene;
-  Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
-  const std::uint64_t broken = forEachPart(scene, read, [&](std::uint64_t, const PartContent& content) {
-    std::optional<std::vector<HidingWitness>> own = witnessesOf(scene.settings, content);
-    if (own) {
-      found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
-                       std::make_move_iterator(own->end()));
-    }
-    return own.has_value();
-  });
-  if (broken != 0) {
-    return brokenPart(broken);
-  }
-  return found;
-}
-
-std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
-  Result<std::vector<std::byte>> bytes = answers(readerOf(parts));
-  return bytes ? std::move(*bytes) : std::vector<std::byte>();
-}
-
-Result<std::vector<std::byte>> Bake::answers(const ReadPart& read) const {
-  const BakeScene& scene = data_->scene;
-  std::map<std::uint64_t, std::vector<std::byte>> kept;
-  const std::uint64_t broken = forEachPart(scene, read, [&](std::uint64_t id, const PartContent& content) {
-    kept.emplace(id, std::vector<std::byte>(content.answers.begin(), content.answers.end()));
-    return true;
-  });
-  if (broken != 0) {
-    return brokenPart(broken);
-  }
-  const std::map<std::uint64_t, std::span<const std::byte>> answers(kept.begin(), kept.end());
-  return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
 }
 
 bool Bake::beginsAsAnswers(std::span<const std::byte> bytes) {

@@ -6,13 +6,15 @@
 #include <deque>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "src/pvs/bake/bake_counts.h"
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_occluders.h"
 #include "src/pvs/bake/convex/cell_candidates.h"
 #include "src/pvs/bake/convex/convex_search.h"
 #include "src/pvs/bake/convex/samples.h"
+#include "src/pvs/bake/dividing_gain.h"
 #include "src/pvs/bake/doors/closed_doors.h"
 #include "src/pvs/bake/object_mask.h"
 #include "src/pvs/bake/seen_sets.h"
@@ -27,6 +29,8 @@ class CellBaker {
   // recall: an earlier bake, whose answers are used where they still hold; none if null. The sets are the
   // same with and without. Both must outlive this.
   explicit CellBaker(const BakeScene& scene, const Recall* recall = nullptr);
+  CellBaker(const CellBaker&) = delete;
+  CellBaker& operator=(const CellBaker&) = delete;
 
   // Sets of the cell. Convex occluders count that intersect the cell grown by search_distance metres on all
   // sides, surfaces wherever they are; these are narrowed and divided only if the cell cannot be divided.
@@ -37,9 +41,10 @@ class CellBaker {
   void lookCloser(const OctreeCell& cell, CellSets& sets);
   // Updates the sets, computed with the smaller distance `searched`, to the greater search_distance.
   void lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets);
-  // True if cells within this one are likely to see clearly less: if a corner or the centre of the cell, or a
-  // centre of one of its children, does, with all occluders that are useful to the smallest cells.
-  bool dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets);
+  // Whether dividing the cell, which must be the last that sets were found for, helps; see DividingGain.
+  bool dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets) {
+    return dividing_gain_.helps(cell, search_distance, sets);
+  }
   // True if the cell is larger than what occluders near it are useful to. Points in it are then no fair
   // sample of what smaller cells see.
   bool tooLargeForItsOccluders(const OctreeCell& cell) const;
@@ -53,9 +58,8 @@ class CellBaker {
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
   BakeStats stats() const;
-  // An estimate of the time for all that was asked so far, in units of some 0.2 microseconds: a number that
-  // is the same on each machine, whatever is kept in memory or known from an earlier bake.
-  std::uint64_t work() const { return work_; }
+  // BakeCounts::work of all that was asked so far.
+  std::uint64_t work() const { return counts_.work + dividing_gain_.counts().work; }
   // The last cell is divided. Forgets what hides objects from the sides of its plane: the cells below it have
   // planes of their own, and if they become one cell again, it has theirs.
   void forgetSides() { witnesses_.forgetSides(); }
@@ -68,14 +72,6 @@ class CellBaker {
   // All that follows is about this cell.
   void startCell(const OctreeCell& cell);
   bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
-  CellBox searchBox(const OctreeCell& cell, double search_distance) const;
-  struct Choice : OccluderChoice {
-    CellBox cell{};
-    double distance = 0.0, distance_before = 0.0;  // of the search boxes, metres
-  };
-  void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
-  // Finds them, those that look largest from the cell first.
-  std::span<const std::uint32_t> chosenOccluders();
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen);
@@ -93,18 +89,13 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
-  // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
-  // them.
-  double shareSeenFrom(const Vec3d& point, const Runs& seen);
-  std::uint64_t trianglesSeenFrom(const Vec3d& eye);
-  // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
-  bool seesFewer(const Vec3d& eye, double triangles);
-
   const BakeScene& scene_;
   CellRecall recall_;
   ConvexSearch search_;
   SampleStore samples_;
   NodeOcclusion surfaces_;
+  CellOccluders occluders_;  // of the current cell
+  DividingGain dividing_gain_;
   ClosedDoors closed_doors_;
   WitnessRecorder witnesses_;
   // By level: lists of the last cell there within which something was asked.
@@ -116,16 +107,13 @@ class CellBaker {
   std::deque<Handed> handed_;
   Runs parent_seen_;  // from anywhere in the current cell's parent; empty: not known
   // Scratch for the current cell.
-  Choice choice_;
-  std::vector<std::uint32_t> chosen_;
-  std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
   ObjectMask hidden_, hidden_from_parent_;
   ObjectMask seen_from_side_;  // of the whole cell that is asked about; otherwise none
   Runs common_, scratch_;
   std::vector<std::uint32_t> hidden_nodes_;
   std::vector<CoarseBox> followed_;
-  std::uint64_t questions_ = 0, asked_ = 0, work_ = 0;
+  BakeCounts counts_;       // without what dividing_gain_ counts
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
 };
 

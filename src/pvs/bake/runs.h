@@ -28,6 +28,15 @@ inline void appendRun(const ObjectRun& run, Runs& runs) {
   }
 }
 
+// The number of objects in the runs.
+inline std::uint64_t countOf(std::span<const ObjectRun> runs) {
+  std::uint64_t count = 0;
+  for (const ObjectRun& run : runs) {
+    count += run.end - run.begin;
+  }
+  return count;
+}
+
 // out: the intersection. It must not alias a or b.
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 // out: the union. It must not alias a or b.
