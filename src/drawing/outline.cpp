@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "src/drawing/outline_union.h"
 #include "src/geometry/clip_convex.h"
+#include "src/geometry/monotone_chain.h"
 
 namespace sightline::drawing {
 namespace {
@@ -155,7 +157,7 @@ GridPath Outliner::page() const {
   return {{0, 0}, {width, 0}, {width, height}, {0, height}};
 }
 
-// Andrew's monotone chain, over corners rounded to the grid.
+// The hull of the corners' images, rounded to the grid.
 void Outliner::imageHull(const SceneView& scene, ObjectId id, GridPath& hull) const {
   constexpr double kFarthest = 0x1p45;  // grid lines, of which products fit into Clipper's numbers
   hull.clear();
@@ -190,17 +192,8 @@ void Outliner::imageHull(const SceneView& scene, ObjectId id, GridPath& hull) co
     hull = points;
     return;
   }
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t first = hull.size();
-    for (const GridPoint& p : points) {
-      while (hull.size() >= first + 2 && turnOf(hull[hull.size() - 2], hull.back(), p) <= 0) {
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
+  hull = geometry::convexHull(std::move(points), [](const GridPoint& a, const GridPoint& b,
+                                                    const GridPoint& c) { return turnOf(a, b, c) > 0; });
 }
 
 }  // namespace sightline::drawing

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/geometry/monotone_chain.h"
 #include "src/layers/pairs/exact_volume.h"
 #include "src/math/longest_axis.h"
 
@@ -37,26 +38,15 @@ std::vector<FlatPoint> flattened(std::span<const Vec3d> points, const Vec3d& nor
   return flat;
 }
 
-// Returns the outline's corners in order around it, by Andrew's monotone chain with exact turns.
+// Returns the outline's corners in order around it, by exact turns.
 std::vector<FlatPoint> outlineOf(std::vector<FlatPoint> flat) {
   std::sort(flat.begin(), flat.end(), [](const FlatPoint& a, const FlatPoint& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.number < b.number;
   });
   const auto same = [](const FlatPoint& a, const FlatPoint& b) { return a.x == b.x && a.y == b.y; };
   flat.erase(std::unique(flat.begin(), flat.end(), same), flat.end());
-  std::vector<FlatPoint> outline;
-  for (int half = 0; half < 2; ++half) {
-    const std::size_t base = outline.size();
-    for (const FlatPoint& p : flat) {
-      while (outline.size() >= base + 2 && turn(outline[outline.size() - 2], outline.back(), p) <= 0.0) {
-        outline.pop_back();
-      }
-      outline.push_back(p);
-    }
-    outline.pop_back();
-    std::reverse(flat.begin(), flat.end());
-  }
-  return outline;
+  return geometry::convexHull(std::move(flat), [](const FlatPoint& a, const FlatPoint& b,
+                                                  const FlatPoint& c) { return turn(a, b, c) > 0.0; });
 }
 
 // Keeps the corners that stand out by more than the tolerance from the chord of those kept (Douglas, Peucker

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
+
+#include "src/geometry/monotone_chain.h"
 
 namespace sightline::render {
 namespace {
@@ -73,29 +76,6 @@ class OverlayBuilder {
   std::vector<OverlayVertex> vertices_;
 };
 
-double turn(const Point& a, const Point& b, const Point& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-// The convex hull by Andrew's monotone chain, counter-clockwise.
-std::vector<Point> convexHull(std::vector<Point> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  std::vector<Point> hull;
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t start = hull.size();
-    for (const Point& p : points) {
-      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0.0) {
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
-
 // The outline of the view's volume seen from above, cut off at twice the picture's radius.
 std::vector<Point> frustumOutline(const OverlayBuilder& builder, const PlanView& plan) {
   const View& view = plan.camera;
@@ -110,7 +90,11 @@ std::vector<Point> frustumOutline(const OverlayBuilder& builder, const PlanView&
       }
     }
   }
-  return convexHull(std::move(corners));
+  std::sort(corners.begin(), corners.end(),
+            [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  return geometry::convexHull(std::move(corners), [](const Point& a, const Point& b, const Point& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
+  });
 }
 
 void addOccluders(OverlayBuilder& builder, const PlanView& plan) {
