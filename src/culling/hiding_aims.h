@@ -10,6 +10,7 @@
 #include "sightline/base/ids.h"
 #include "sightline/math/box.h"
 #include "src/culling/doubt_memory.h"
+#include "src/culling/last_view.h"
 
 namespace sightline::culling {
 
@@ -61,13 +62,15 @@ class HidingAims {
     }
     const auto tries = static_cast<double>(aimed_at_.size() - news.size());
     saved_work_ += kWorkForNew * static_cast<double>(news.size()) + kWorkForTry * tries;
-    const double most = std::max(kMaxShare * drawn, kMinCap);
-    const auto worth = static_cast<std::uint32_t>(std::min({saved_work_, most, static_cast<double>(left)}));
+    const double usual_most = std::max(kMaxShare * drawn, kMinCap);
+    // What was drawn says little of what is needed where most of what is shown is new.
+    const double most = mostIsNew(news.size(), shown.size()) ? left : std::min<double>(usual_most, left);
+    const auto worth = static_cast<std::uint32_t>(std::min(saved_work_, most));
     if (aimed_at_.empty() || saved_work_ <= kMinShare * drawn || worth == 0) {
       aimed_at_.clear();
       return 0;
     }
-    saved_work_ = std::min(saved_work_ - worth, most);
+    saved_work_ = std::min(saved_work_ - worth, usual_most);
     boxes_.clear();
     boxes_.reserve(shown.size());
     append(std::span<const Id>(aimed_at_), box_of);
@@ -98,8 +101,8 @@ class HidingAims {
   // So much is drawn for each new object, and for each of the other ones.
   static constexpr double kWorkForNew = 50.0, kWorkForTry = 25.0;
   // All of that is saved up until it is more than kMinShare of what was drawn before in the view. Then at
-  // most kMaxShare of what was drawn is spent, or kMinCap if that is more; as much again may be left to later
-  // views.
+  // most kMaxShare of what was drawn is spent, or kMinCap if that is more, but any share where most objects
+  // are new. As much as that may be left to later views.
   static constexpr double kMinShare = 1.5, kMaxShare = 2.0, kMinCap = 2000.0;
 
   template <typename BoxOf>

@@ -8,7 +8,7 @@
 namespace sightline::culling {
 namespace {
 
-constexpr std::size_t kObjects = 100;
+constexpr std::size_t kObjects = 200;
 
 // The box of an object has its number as its least x.
 std::vector<Box> numberedBoxes() {
@@ -92,11 +92,21 @@ TEST_F(HidingAimsTest, WorkThatIsTooMuchForOneViewIsLeftToLaterOnes) {
   // Where little was drawn, and where much was.
   for (const double drawn : {100.0, 1200.0}) {
     aims_ = HidingAims<ObjectId>(kObjects);
-    const std::uint32_t first = view(numbers(0, kObjects), numbers(0, kObjects), drawn);
+    const std::uint32_t first = view(numbers(0, kObjects), numbers(0, kObjects / 2), drawn);
     EXPECT_GT(first, drawn);
     EXPECT_LE(first, std::max(2.0 * drawn, 2000.0));
     EXPECT_GT(view(numbers(0, kObjects), numbers(0, 1), drawn), 0.9 * first) << "one alone is worth less";
   }
+}
+
+TEST_F(HidingAimsTest, WhereMostIsNewAllThatIsLeftMayBeSpentAtOnce) {
+  constexpr double kDrawn = 100.0;
+  const std::size_t half = kObjects / 2;
+  const std::uint32_t usual = view(numbers(0, kObjects), numbers(0, half), kDrawn);
+  aims_ = HidingAims<ObjectId>(kObjects);
+  EXPECT_GT(view(numbers(0, kObjects), numbers(0, half + 1), kDrawn), 2 * usual);
+  aims_ = HidingAims<ObjectId>(kObjects);
+  EXPECT_EQ(view(numbers(0, kObjects), numbers(0, half + 1), kDrawn, 2 * usual), 2 * usual);
 }
 
 TEST_F(HidingAimsTest, NotMuchIsSavedUp) {
