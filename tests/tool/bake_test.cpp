@@ -268,6 +268,17 @@ TEST(Bake, WarnsWhenItsSetsHideNothingAndSaysWhy) {
   const std::string floor =
       "v 0 0 0\nv 9 0 0\nv 0 0 9\nv 9 0 9\nv 0 5 0\nv 0 5 1\no a\nf 1 3 4 2\no b\nf 1 5 5\nf 1 6 6\n";
   expectSays("can occlude", folder.write("floor.obj", floor), {"--triangle-budget", "1"});
+  // A wall that hides one small tile. Most triangles are seen from everywhere.
+  std::string open =
+      "v -9 0 -9\nv 9 9 9\nv -8 0 -9\nv -3 0 0\nv 3 0 0\nv 3 9 0\nv -3 9 0\nv 0 0 4\nv 1 0 4\nv 0 1 4\no a\n";
+  for (int i = 0; i < 100; ++i) {
+    open += "f 1 2 3\n";
+  }
+  open += "o wall\nf 4 5 6 7\no tile\nf 8 9 10\n";
+  open = folder.write("open.obj", open);
+  expectSays("--occlusion fused", open, {"--triangle-budget", "1", "--depth", "3"});
+  expectSays("surfaces hide little", open,
+             {"--triangle-budget", "1", "--depth", "3", "--occlusion", "fused"});
 }
 
 TEST(Bake, TakesAndAnswersPointsInWorldSpace) {

@@ -192,6 +192,19 @@ TEST_F(UpdatedBake, BakesAllAnewWithOtherSettingsOrBounds) {
   }
 }
 
+TEST_F(UpdatedBake, SaysThatDoorsAreNotGivenAnyMore) {
+  bakeFirst({"--doors", "12"});
+  const std::vector<std::string> update =
+      bake("moved.obj", "new.sight", {"--update", folder_.file("first.sight")});
+  const Outcome without = runTool(update);
+  EXPECT_EQ(without.code, 0) << without.err;
+  EXPECT_NE(without.err.find("had doors"), std::string::npos) << without.err;
+  EXPECT_EQ(without.errorLines(), 1) << without.err;
+  const Outcome with = runTool(joined(update, {"--doors", "12"}));
+  EXPECT_EQ(with.code, 0) << with.err;
+  EXPECT_EQ(with.errorLines(), 0) << with.err;
+}
+
 TEST_F(UpdatedBake, GoesOnAfterItWasKilled) {
   bakeFirst();
   ASSERT_EQ(runTool(bake("moved.obj", "full.sight")).code, 0);

@@ -40,6 +40,7 @@ struct Planned {
   double load_us = 0.0, plan_us = 0.0;
   std::vector<Vec3d> viewpoints{};  // scene space: see DatabaseChoice::places
   std::optional<Bake::TakenOver> update{};
+  bool without_doors = false;  // the baked file that is updated has doors, and none are given now
 };
 
 CheckpointUse useOf(const BakeOptions& options) {
@@ -231,15 +232,17 @@ Result<Planned> planBake(const BakeOptions& options) {
     return bake.error();
   }
   std::optional<Bake::TakenOver> update;
+  bool without_doors = false;
   if (*before) {
+    without_doors = settings.doors.empty() && (*before)->file.doors().groupCount() > 0;
     Result<Bake::TakenOver> taken = takeOver(**before, options, *bake);
     if (!taken) {
       return taken.error();
     }
     update = std::move(*taken);
   }
-  return Planned{std::move(*scene), closing.note(), std::move(*viewers),    std::move(*bake),
-                 load_us,           watch.lap(),    std::move(*viewpoints), std::move(update)};
+  return Planned{std::move(*scene), closing.note(),         std::move(*viewers), std::move(*bake), load_us,
+                 watch.lap(),       std::move(*viewpoints), std::move(update),   without_doors};
 }
 
 // Writes the files that belong beside the baked one.
@@ -374,6 +377,11 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
       fmt::print(stderr, "sightline: --update {}: was baked with {}; all is baked anew\n", options.update,
                  planned->update->difference);
     }
+    if (planned->without_doors) {
+      fmt::print(stderr,
+                 "sightline: --update {}: had doors, and no --doors are given now: there will be none\n",
+                 options.update);
+    }
     keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
                              options.partsFile()));
   }
@@ -432,7 +440,9 @@ void addBake(CLI::App& app, Command& chosen) {
       "--resume may always be given. Of what is there, each part counts only as it was written: one that is "
       "altered or cut off is told of in a line, and is baked again.\n"
       "After a change of the scene, --update OLD.sight takes over what does not depend on the change, from "
-      "OLD.sight.answers, which is trusted; the file has the bytes of a full bake. With other settings, or "
+      "OLD.sight.answers, which is trusted; the file has the bytes of a full bake with the settings that are "
+      "given now. With another --occlusion, --near-distance, --occluder-size, --narrowings or --divisions, "
+      "or "
       "if the bounds of the scene changed, all is baked anew, and a line says so.\n"
       "The file is the same bit for bit, whatever the threads and processes. --threads and --sample-memory "
       "are of each process.\n"

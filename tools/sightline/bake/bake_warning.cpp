@@ -68,7 +68,11 @@ std::string reasonFor(const SightFile& file, const SightFacts& facts) {
         "--viewers are",
         edge, record.max_depth);
   }
-  return "single convex occluders hide little here: the scene is open, or its walls are of many small pieces";
+  if (!occluders || occluders->alone) {
+    return "single convex occluders hide little here: the scene is open, or its walls are of many small "
+           "pieces, which --occlusion fused lets hide together";
+  }
+  return "surfaces hide little here: the scene is open, or whole rooms lie in one cell";
 }
 
 }  // namespace

@@ -322,8 +322,11 @@ std::optional<OccluderFacts> occludersOf(const BakeRecord& record) {
   if (!inner || !of_use || !area || !size) {
     return std::nullopt;
   }
-  return OccluderFacts{
-      .none = *inner < 1.0, .none_of_use = *of_use < 1.0, .largest_area = *area, .size = *size};
+  return OccluderFacts{.none = *inner < 1.0,
+                       .none_of_use = *of_use < 1.0,
+                       .largest_area = *area,
+                       .size = *size,
+                       .alone = settings.value("occlusion", Json()) != "fused"};
 }
 
 std::string cracksText(const SightFile& file) {

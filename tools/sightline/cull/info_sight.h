@@ -68,6 +68,7 @@ struct OccluderFacts {
   bool none_of_use = false;   // no other is large enough for the smallest cells
   double largest_area = 0.0;  // of the others, in square metres
   double size = 1.0;          // BakeSettings::occluder_size
+  bool alone = true;          // nothing but a single convex occluder hides
 };
 std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 
