@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sightline/culling/culler.h"
-#include "sightline/culling/occlusion_tree_method.h"
+#include "sightline/culling/depth_pyramid_method.h"
 
 using namespace sightline;
 
@@ -43,8 +43,8 @@ int main() {
 
   // A hierarchy over the objects, and what can hide them; then from views to the objects that may be seen.
   const Hierarchy hierarchy = buildHierarchy(bounds, triangles);  // once a scene
-  const OccluderSet occluders = findOccluders(scene.view());
-  Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders}, occlusionTree());
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds, .surfaces = &surfaces}, depthPyramid());
   culler.cull(view);  // every frame
   for (ObjectId id : culler.visible()) {
     std::printf("visible: %u\n", id.value);

@@ -215,7 +215,7 @@ Result<CameraPath> parseCameraPath(std::string_view text, const std::string& nam
     }
     return readPath(document, name_in_errors);
   } catch (const std::exception& exception) {
-    return failure("{}: is not valid JSON: {}", name_in_errors, exception.what());
+    return failure("{}: is not valid JSON: {}", name_in_errors, jsonFault(exception));
   }
 }
 

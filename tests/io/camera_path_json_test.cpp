@@ -155,6 +155,7 @@ TEST(CameraPathJson, RefusesWhatIsNotJson) {
     ASSERT_FALSE(path) << text;
     EXPECT_EQ(path.error().message.find("bad: "), 0u) << path.error().message;
     EXPECT_EQ(path.error().message.find('\n'), std::string::npos) << path.error().message;
+    EXPECT_EQ(path.error().message.find("exception"), std::string::npos) << path.error().message;
   }
 }
 

@@ -226,7 +226,7 @@ Result<json> parseJson(std::string_view text, const std::string& name) {
   try {
     return json::parse(text);
   } catch (const json::exception& exception) {
-    return failure("{}: is not valid JSON: {}", name, exception.what());
+    return failure("{}: is not valid JSON: {}", name, jsonFault(exception));
   }
 }
 
