@@ -31,6 +31,8 @@ class StrongComponents {
       number_[node] = kNew;
     }
     last_number_ = kNew;
+    open_.clear();
+    path_.clear();
     for (const std::uint32_t node : nodes) {
       if (contains(node) && number_[node] == kNew) {
         visit(node, contains, headsOf, found);

@@ -47,7 +47,7 @@ class HidingAims {
 
   // Aims instead at objects that the depth buffer shows: at all that are new since the last view, and in some
   // views at others. drawn: work that was done in this view; left: work that may be done. Returns the work
-  // that may be done for them, at most `left`, or 0 if that is to wait.
+  // that may be done for them, at most `left`, which is all of it where most is new, or 0 if that is to wait.
   template <typename BoxOf>
   std::uint32_t aimAtShown(std::span<const Id> shown, std::span<const Id> news, double drawn,
                            std::uint32_t left, const BoxOf& box_of) {
@@ -62,15 +62,17 @@ class HidingAims {
     }
     const auto tries = static_cast<double>(aimed_at_.size() - news.size());
     saved_work_ += kWorkForNew * static_cast<double>(news.size()) + kWorkForTry * tries;
-    const double usual_most = std::max(kMaxShare * drawn, kMinCap);
-    // What was drawn says little of what is needed where most of what is shown is new.
-    const double most = mostIsNew(news.size(), shown.size()) ? left : std::min<double>(usual_most, left);
-    const auto worth = static_cast<std::uint32_t>(std::min(saved_work_, most));
+    const double most = std::max(kMaxShare * drawn, kMinCap);
+    // Where most is new, what was drawn says little of what is worth it.
+    const auto worth =
+        mostIsNew(news.size(), shown.size())
+            ? left
+            : static_cast<std::uint32_t>(std::min({saved_work_, most, static_cast<double>(left)}));
     if (aimed_at_.empty() || saved_work_ <= kMinShare * drawn || worth == 0) {
       aimed_at_.clear();
       return 0;
     }
-    saved_work_ = std::min(saved_work_ - worth, usual_most);
+    saved_work_ = std::clamp(saved_work_ - worth, 0.0, most);
     boxes_.clear();
     boxes_.reserve(shown.size());
     append(std::span<const Id>(aimed_at_), box_of);
@@ -101,8 +103,8 @@ class HidingAims {
   // So much is drawn for each new object, and for each of the other ones.
   static constexpr double kWorkForNew = 50.0, kWorkForTry = 25.0;
   // All of that is saved up until it is more than kMinShare of what was drawn before in the view. Then at
-  // most kMaxShare of what was drawn is spent, or kMinCap if that is more, but any share where most objects
-  // are new. As much as that may be left to later views.
+  // most kMaxShare of what was drawn is spent, or kMinCap if that is more; as much again may be left to later
+  // views.
   static constexpr double kMinShare = 1.5, kMaxShare = 2.0, kMinCap = 2000.0;
 
   template <typename BoxOf>

@@ -2,6 +2,7 @@
 
 // Rings of grid points as paths of Clipper, which clips polygons in whole numbers, and its failures.
 
+#include <cstdint>
 #include <polyclipping/clipper.hpp>
 
 #include "src/drawing/outline_chain.h"

@@ -2,6 +2,7 @@
 
 // Clipping of convex polygons, one half-space at a time (Sutherland, Hodgman 1974), and dividing them.
 
+#include <cstddef>
 #include <vector>
 
 #include "sightline/math/vec3.h"

@@ -12,8 +12,8 @@
 namespace sightline::geometry {
 
 // The corners in order around the hull, counter-clockwise from the first point; none for a single point.
-// points: ascending by x, then y. turnsLeft(a, b, c): whether c lies to the left of the line from a to b;
-// corners where it does not are left out.
+// points: at least one, and not several equal ones alone; ascending by x, then y. turnsLeft(a, b, c): whether
+// c lies to the left of the line from a to b; corners where it does not are left out.
 template <typename Point, typename TurnsLeft>
 std::vector<Point> convexHull(std::vector<Point> points, TurnsLeft&& turnsLeft) {
   std::vector<Point> hull;

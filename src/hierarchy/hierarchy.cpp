@@ -8,6 +8,7 @@
 
 namespace sightline {
 namespace hierarchy {
+
 HierarchyNode FlatWriter::enclosing(std::span<const Item> items) const {
   HierarchyNode node;
   std::uint64_t cost = 0;

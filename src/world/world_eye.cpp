@@ -116,10 +116,8 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
     SurfaceDrawing drawing = whatIsLeft(ViewStep::kSame);
     drawing.draw_resting = culling::mostIsNew(news_.size(), shown_.size());
     if (!aims_.boxes().empty()) {
-      const std::uint32_t worth = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
-                                                   [&](InstanceId id) { return data.boxOf(id.value); });
-      // Where most is new, what was drawn says little of what is worth it.
-      drawing.budget = drawing.draw_resting && worth > 0 ? drawing.budget : worth;
+      drawing.budget = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
+                                        [&](InstanceId id) { return data.boxOf(id.value); });
       drawing.targets = aims_.boxes();
       if (drawing.budget > 0) {
         if (const std::uint32_t work = draw(data, view, shown_, drawing); work > 0) {

@@ -4,11 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
+#include <span>
+#include <utility>
+#include <vector>
 
-#include "tests/layers/strong_components.h"
 #include "tests/support/rounds.h"
+#include "tests/support/strong_components.h"
 
 namespace sightline {
 namespace {

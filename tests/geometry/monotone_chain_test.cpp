@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <compare>
 #include <random>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "tests/support/rounds.h"
 

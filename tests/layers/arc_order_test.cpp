@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/layers/strong_components.h"
+#include "tests/support/strong_components.h"
 
 namespace sightline {
 namespace {

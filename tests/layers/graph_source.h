@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "src/layers/sort/occluder_source.h"
-#include "tests/layers/strong_components.h"
+#include "tests/support/strong_components.h"
 
 namespace sightline::layers {
 

@@ -16,9 +16,9 @@
 
 #include "sightline/layers/layer_sorter.h"
 #include "tests/layers/sorter_choices.h"
-#include "tests/layers/strong_components.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
+#include "tests/support/strong_components.h"
 
 namespace sightline::made {
 

@@ -16,8 +16,8 @@
 #include "scenes/procedural.h"
 #include "sightline/occluders/surface_set.h"
 #include "tests/occluders/triangle_soup.h"
-#include "tests/occlusion/made_surfaces.h"
 #include "tests/support/cut_work.h"
+#include "tests/support/made_surfaces.h"
 #include "tests/support/rounds.h"
 #include "tests/support/solids.h"
 

@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "tests/occlusion/made_surfaces.h"
 #include "tests/occlusion/surface_proofs.h"
 #include "tests/oracle/hand_made.h"
+#include "tests/support/made_surfaces.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/rounds.h"
 

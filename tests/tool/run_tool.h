@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -78,7 +79,9 @@ inline nlohmann::json parse(const std::string& text) {
 inline nlohmann::json printedJson(const Outcome& outcome, int code = 0) {
   EXPECT_EQ(outcome.code, code) << outcome.err;
   nlohmann::json printed = parse(outcome.out);
-  EXPECT_TRUE(printed.is_object()) << outcome.out.substr(0, 200);
+  if (!printed.is_object()) {
+    throw std::runtime_error("no JSON object was printed but: " + outcome.out.substr(0, 200) + outcome.err);
+  }
   return printed;
 }
 

@@ -9,7 +9,7 @@
 
 namespace sightline::io {
 
-// Decodes percent signs: "a%20b" -> "a b". Nothing if one has no two hexadecimal digits, or those of zero.
+// Decodes percent signs: "a%20b" -> "a b". Nothing if one has no two hexadecimal digits, or is "%00".
 std::optional<std::string> decodePercent(std::string_view text);
 
 // The files that a .gltf or .glb names, whether or not Sightline reads them: buffers and pictures, relative

@@ -3,11 +3,17 @@
 #include <algorithm>
 
 namespace sightline::pvs {
+namespace {
+
+CellBox grown(const CellBox& box, double distance) {
+  const Vec3d by{distance, distance, distance};
+  return {box.min - by, box.max + by};
+}
+
+}  // namespace
 
 CellBox searchBox(const BakeScene& scene, const OctreeCell& cell, double search_distance) {
-  const CellBox box = scene.boxOf(cell);
-  const Vec3d grown{search_distance, search_distance, search_distance};
-  return {box.min - grown, box.max + grown};
+  return grown(scene.boxOf(cell), search_distance);
 }
 
 void CellOccluders::choose(const OctreeCell& cell, double search_distance, std::uint32_t level) {
@@ -20,8 +26,7 @@ void CellOccluders::choose(const OctreeCell& cell, double search_distance, std::
 }
 
 void CellOccluders::leaveOutWithin(double distance) {
-  const Vec3d grown{distance, distance, distance};
-  choice_.known = CellBox{choice_.cell.min - grown, choice_.cell.max + grown};
+  choice_.known = grown(choice_.cell, distance);
   choice_.distance_before = distance;
   chosen_.clear();
 }

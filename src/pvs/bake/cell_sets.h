@@ -89,6 +89,7 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region, const RegionEffort& effort);
+
   const BakeScene& scene_;
   CellRecall recall_;
   ConvexSearch search_;
