@@ -24,7 +24,8 @@ class Started {
     const std::string out = folder_.file("out"), err = folder_.file("err");
     pid_ = fork();
     if (pid_ == 0) {
-      // A shell starts what runs in the background, tests too, with SIGINT ignored, and the tool keeps to that.
+      // A shell starts what runs in the background with SIGINT ignored, tests too, and the tool keeps to
+      // that.
       ::signal(SIGINT, SIG_DFL);
       dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
       dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
