@@ -23,10 +23,10 @@ class StrongComponents {
 
   // Calls found(std::span<const std::uint32_t> component) once for each component among `nodes`, after all
   // components that it reaches, with its nodes in the order in which they were visited. contains(node) says
-  // whether a node is one of `nodes`, of which it may leave some out; headsOf(node) is the span of the nodes
+  // whether a node is one of `nodes`, of which it may leave some out; heads_of(node) is the span of the nodes
   // to which its arcs lead.
   template <typename Contains, typename HeadsOf, typename Found>
-  void find(std::span<const std::uint32_t> nodes, Contains&& contains, HeadsOf&& headsOf, Found&& found) {
+  void find(std::span<const std::uint32_t> nodes, Contains&& contains, HeadsOf&& heads_of, Found&& found) {
     for (const std::uint32_t node : nodes) {
       number_[node] = kNew;
     }
@@ -35,7 +35,7 @@ class StrongComponents {
     path_.clear();
     for (const std::uint32_t node : nodes) {
       if (contains(node) && number_[node] == kNew) {
-        visit(node, contains, headsOf, found);
+        visit(node, contains, heads_of, found);
       }
     }
   }
@@ -48,11 +48,11 @@ class StrongComponents {
   };
 
   template <typename Contains, typename HeadsOf, typename Found>
-  void visit(std::uint32_t root, Contains&& contains, HeadsOf&& headsOf, Found&& found) {
+  void visit(std::uint32_t root, Contains&& contains, HeadsOf&& heads_of, Found&& found) {
     enter(root);
     while (!path_.empty()) {
       const std::uint32_t node = path_.back().node;
-      const std::span<const std::uint32_t> heads = headsOf(node);
+      const std::span<const std::uint32_t> heads = heads_of(node);
       if (path_.back().next == heads.size()) {
         leave(found);
         continue;
