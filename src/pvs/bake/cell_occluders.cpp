@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace sightline::pvs {
-namespace {
-
-CellBox grown(const CellBox& box, double distance) {
-  const Vec3d by{distance, distance, distance};
-  return {box.min - by, box.max + by};
-}
-
-}  // namespace
 
 CellBox searchBox(const BakeScene& scene, const OctreeCell& cell, double search_distance) {
   return grown(scene.boxOf(cell), search_distance);

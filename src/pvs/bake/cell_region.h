@@ -24,6 +24,12 @@ struct CellBox {
   double smallestFace() const;
 };
 
+// The box grown by a distance on all sides, metres.
+inline CellBox grown(const CellBox& box, double distance) {
+  const Vec3d by{distance, distance, distance};
+  return {box.min - by, box.max + by};
+}
+
 // True if the closed boxes intersect.
 inline bool intersects(const CellBox& a, const CellBox& b) {
   return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && a.max.x >= b.min.x &&

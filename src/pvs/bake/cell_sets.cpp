@@ -64,9 +64,8 @@ bool CellBaker::tooLargeForItsOccluders(const OctreeCell& cell) const {
 CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
   startCell(cell);
   const CellBox box = scene_.regionOf(cell);
-  const double near = 2.0 * scene_.settings.near_distance;
   faces_.clear();
-  scene_.findFaces({box.min - Vec3d{near, near, near}, box.max + Vec3d{near, near, near}}, faces_);
+  scene_.findFaces(grown(box, 2.0 * scene_.settings.near_distance), faces_);
   CellSets sets;
   parent_seen_ = seen;
   sets.whole = seen;

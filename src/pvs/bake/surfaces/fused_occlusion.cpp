@@ -106,9 +106,7 @@ bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t o
 }
 
 CellBox FusedOcclusion::endsIn(const CellBox& target) const {
-  const double widening = kWidening * magnitude_;
-  const Vec3d by{widening, widening, widening};
-  return {target.min - by, target.max + by};
+  return grown(target, kWidening * magnitude_);
 }
 
 Vec3d FusedOcclusion::startOf(const CellBox& region) {
