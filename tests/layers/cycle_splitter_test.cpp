@@ -12,9 +12,12 @@
 #include "scenes/moving_scene.h"
 #include "tests/layers/moving_sorter.h"
 #include "tests/layers/split_things.h"
+#include "tests/support/translation.h"
 
 namespace sightline::splitting {
 namespace {
+
+using test::translation;
 
 // Three rods, each over the next one, as seen along -z.
 std::vector<Thing> threeRods() {
@@ -244,14 +247,6 @@ TEST(CycleSplitter, PiecesStayFromFrameToFrame) {
   }
 }
 
-Mat4 shiftedBy(const Vec3d& by) {
-  Mat4 m;
-  for (int row = 0; row < 3; ++row) {
-    m(row, 3) = by[row];
-  }
-  return m;
-}
-
 TEST(CycleSplitter, PiecesAreJoinedSomeFramesAfterTheCycleIsGone) {
   ThingSorter sorter(threeRods(), false, {.keep_frames = 10});
   sorter.update(farView());
@@ -260,7 +255,7 @@ TEST(CycleSplitter, PiecesAreJoinedSomeFramesAfterTheCycleIsGone) {
   for (int round = 0; round < 5; ++round) {
     SCOPED_TRACE(round);
     for (std::uint32_t part = 0; part < 3; ++part) {
-      sorter.place(part, shiftedBy({0, 0, 5.0 * -static_cast<double>(part)}));  // one behind the other
+      sorter.place(part, translation({0, 0, 5.0 * -static_cast<double>(part)}));  // one behind the other
     }
     int frames = 0;
     while (!sorter.splitter().pieces().empty() && frames < 40) {
@@ -371,7 +366,7 @@ TEST(CycleSplitter, PiecesThatTouchAreJoinedWithoutATolerance) {
     sorter.update(farView());
     ASSERT_GT(sorter.splitter().pieces().size(), 2u);
     for (int link = 0; link < links; ++link) {
-      sorter.place(static_cast<std::uint32_t>(link), shiftedBy({100.0 * link, 0, 0}));
+      sorter.place(static_cast<std::uint32_t>(link), translation({100.0 * link, 0, 0}));
     }
     for (int frame = 0; frame < 200; ++frame) {
       sorter.update(farView());
@@ -392,16 +387,16 @@ TEST(CycleSplitter, ANeighbourThatARuleOrdersDoesNotKeepAPartDivided) {
   }
   const PairCallback first{[](void*, const View&) { return PairOrder{true, false}; }, nullptr};
   for (const std::uint32_t neighbour : {3u, 4u}) {
-    sorter.place(neighbour, shiftedBy({0, 0, -50.0 * neighbour}));
+    sorter.place(neighbour, translation({0, 0, -50.0 * neighbour}));
     sorter.sorter().setRule(PartId(1u), PartId(neighbour), first);
   }
   sorter.sorter().setRule(PartId(3u), PartId(4u), first);
   sorter.update(farView());
   ASSERT_EQ(sorter.splitter().pieces().size(), 2u);
-  sorter.place(0, shiftedBy({100, 0, 0}));
-  sorter.place(2, shiftedBy({200, 0, 0}));
+  sorter.place(0, translation({100, 0, 0}));
+  sorter.place(2, translation({200, 0, 0}));
   for (const std::uint32_t neighbour : {3u, 4u}) {
-    sorter.place(neighbour, shiftedBy({0.02 * neighbour, 0, 0}));
+    sorter.place(neighbour, translation({0.02 * neighbour, 0, 0}));
   }
   for (int frame = 0; frame < 100; ++frame) {
     sorter.update(farView());
@@ -474,9 +469,7 @@ TEST(CycleSplitter, ThePiecesOfARemovedPartGoWithIt) {
     std::set<std::uint32_t> expected{0, 1, 2};
     if (is_replaced) {
       ASSERT_EQ(sorter.sorter().addPart(hulls), divided);
-      Mat4 aside;
-      aside(0, 3) = 100.0;
-      sorter.sorter().setTransform(divided, aside);
+      sorter.sorter().setTransform(divided, translation({100.0, 0, 0}));
     } else {
       expected.erase(divided.value);
     }

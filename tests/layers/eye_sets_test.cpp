@@ -229,7 +229,7 @@ TEST(EyeSets, SweptPartsHaveAnOrderThatHoldsAtAllTimes) {
 }
 
 TEST(EyeSets, ASweptHullIsTheHullOfAllPlacesAndNoMore) {
-  Mat4 last = shifted({10, 0, 0});
+  Mat4 last = translation({10, 0, 0});
   last(1, 1) = 3.0;
   const Result<ConvexHull> swept = sweptHull(*buildHull(shapes::cube()), {}, last);
   ASSERT_TRUE(swept);

@@ -19,7 +19,7 @@ namespace {
 using namespace made;
 
 MadePart partAt(const Points& points, const Vec3d& centre) {
-  return {.hulls = {points}, .world_from_part = shifted(centre), .settings = {}, .enabled = true};
+  return {.hulls = {points}, .world_from_part = translation(centre), .settings = {}, .enabled = true};
 }
 
 // Points with small whole coordinates, of which several are corners of their hull.
@@ -63,7 +63,7 @@ class Changing {
   }
   void move() {
     const std::uint32_t part = any();
-    parts_.at(part).part.world_from_part = shifted(somePlace(random_));
+    parts_.at(part).part.world_from_part = translation(somePlace(random_));
     sorter_.setTransform(PartId(part), parts_.at(part).part.world_from_part);
   }
 
@@ -181,7 +181,7 @@ TEST(LayerSorterChanges, ARemovedPartTakesItsRulesAlongAndCallsWithItDoNothing) 
   sorter.removePart(front);
   sorter.removePart(front);
   EXPECT_EQ(sorter.parts(), 2u);
-  EXPECT_FALSE(sorter.setTransform(front, shifted({0, 0, 1})));
+  EXPECT_FALSE(sorter.setTransform(front, translation({0, 0, 1})));
   sorter.setEnabled(front, true);
   sorter.setRule(front, back, rule);
   sorter.removePart(PartId(77u));
@@ -263,7 +263,7 @@ TEST(LayerSorterChanges, APartThatIsNotFiniteIsNotOutside) {
   const PartId far = addMade(sorter, partAt(shapes::cube(), {0, 0, 1000}));
   const View view = viewFrom({0, 0, 9});
   EXPECT_EQ(sorter.update(view).parts.size(), 0u);
-  Mat4 nowhere = shifted({0, 0, 1000});
+  Mat4 nowhere = translation({0, 0, 1000});
   nowhere(0, 3) = std::numeric_limits<double>::quiet_NaN();
   sorter.setTransform(far, nowhere);
   EXPECT_EQ(sorter.update(view).parts.size(), 1u);

@@ -19,7 +19,7 @@ namespace {
 using namespace made;
 
 MadePart cubeAt(const Vec3d& centre) {
-  return {.hulls = {shapes::cube()}, .world_from_part = shifted(centre), .settings = {}, .enabled = true};
+  return {.hulls = {shapes::cube()}, .world_from_part = translation(centre), .settings = {}, .enabled = true};
 }
 
 MadeScene cubesAt(const std::vector<Vec3d>& centres, const Vec3d& eye) {
@@ -175,7 +175,7 @@ struct Plates {
     for (std::uint32_t i = 0; i < kCount; ++i) {
       const double reach = random.whole(2, 400);
       scene.parts.push_back({.hulls = {shapes::box({-1, -1, 0}, {reach, 1, 0.5})},
-                             .world_from_part = shifted({0, 0, depthOf(i)}),
+                             .world_from_part = translation({0, 0, depthOf(i)}),
                              .settings = {},
                              .enabled = true});
     }
@@ -223,8 +223,10 @@ TEST(LayerSorterCoherence, TwoNeighboursThatChangePlacesCostOneReinsertionAndOne
       sorter.update(plates.scene.view);
       std::vector<std::uint32_t> expected = order;
       std::swap(expected[at], expected[at + 1]);
-      ASSERT_TRUE(sorter.setTransform(PartId(order[at]), shifted({0, 0, Plates::depthOf(order[at + 1])})));
-      ASSERT_TRUE(sorter.setTransform(PartId(order[at + 1]), shifted({0, 0, Plates::depthOf(order[at])})));
+      ASSERT_TRUE(
+          sorter.setTransform(PartId(order[at]), translation({0, 0, Plates::depthOf(order[at + 1])})));
+      ASSERT_TRUE(
+          sorter.setTransform(PartId(order[at + 1]), translation({0, 0, Plates::depthOf(order[at])})));
       const LayerOrder& warm = sorter.update(plates.scene.view);
       EXPECT_EQ(partsOf(warm), expected);
       EXPECT_EQ(warm.stats.candidates, 1u);

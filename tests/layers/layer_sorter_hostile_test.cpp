@@ -6,17 +6,12 @@
 
 #include "sightline/layers/compositing.h"
 #include "sightline/layers/layer_sorter.h"
+#include "tests/support/translation.h"
 
 namespace sightline {
 namespace {
 
-Mat4 moved(const Vec3d& to) {
-  Mat4 m;
-  m(0, 3) = to.x;
-  m(1, 3) = to.y;
-  m(2, 3) = to.z;
-  return m;
-}
+using test::translation;
 
 ConvexHull point() {
   return *buildHull(std::vector<Vec3d>{{0, 0, 0}});
@@ -36,7 +31,7 @@ LayerSorter two(const ConvexHull& hull, double behind, LayerSettings settings = 
   LayerSorter sorter(settings);
   const HullId id = sorter.addHull(hull);
   sorter.addPart({&id, 1});
-  sorter.setTransform(sorter.addPart({&id, 1}), moved({0, 0, -behind}));
+  sorter.setTransform(sorter.addPart({&id, 1}), translation({0, 0, -behind}));
   return sorter;
 }
 
@@ -81,8 +76,8 @@ TEST(HostileSorter, AHullWithoutVerticesCanBeAnywhere) {
   LayerSorter sorter;
   const HullId empty = sorter.addHull({}), solid = sorter.addHull(cube());
   const PartId first = sorter.addPart({&empty, 1}), second = sorter.addPart({&solid, 1});
-  sorter.setTransform(first, moved({0, 0, -5}));
-  sorter.setTransform(second, moved({0, 0, -50}));
+  sorter.setTransform(first, translation({0, 0, -5}));
+  sorter.setTransform(second, translation({0, 0, -50}));
   EXPECT_EQ(sorter.update(View{}).groups(), 1u);
 }
 

@@ -56,7 +56,7 @@ TEST(LayerSorterRules, APlaneMovesWithItsFirstPart) {
   sorter.setRule(PartId(0u), PartId(1u), PairPlane{{{0, 0, 1}, 0.0}});
   EXPECT_EQ(groupsOf(sorter.update(scene.view)), (std::vector<Group>{{0}, {1}}));
   for (std::uint32_t i = 0; i < 2; ++i) {
-    EXPECT_TRUE(sorter.setTransform(PartId(i), shifted({0, 0, 20})));
+    EXPECT_TRUE(sorter.setTransform(PartId(i), translation({0, 0, 20})));
   }
   EXPECT_EQ(groupsOf(sorter.update(scene.view)), (std::vector<Group>{{1}, {0}})) << "the eye is behind now";
 }
@@ -114,7 +114,7 @@ LayerSorter glassOfMarbles(const LayerSettings& settings, Points content) {
   const PartId marble = sorter.addPart(inside);
   const PartId back = sorter.addPart(shell), front = sorter.addPart(shell);
   const PartId other = sorter.addPart(inside);
-  sorter.setTransform(other, shifted({0, 0, 2}));
+  sorter.setTransform(other, translation({0, 0, 2}));
   sorter.setContainer(front, back);
   EXPECT_EQ(marble.value, 0u);
   return sorter;
@@ -126,12 +126,12 @@ TEST(LayerSorterRules, ContentIsBetweenTheFrontAndTheBackOfItsContainer) {
     LayerSorter sorter = glassOfMarbles(way.settings, shapes::cube({}, 0.5));
     EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, 20}))), (std::vector<Group>{{2}, {3}, {0}, {1}}));
     EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, -20}))), (std::vector<Group>{{2}, {0}, {3}, {1}}));
-    sorter.setTransform(PartId(0u), shifted({0, 4, 0}));  // through the container's side
+    sorter.setTransform(PartId(0u), translation({0, 4, 0}));  // through the container's side
     const Answer through(sorter.update(viewFrom({0, 0, 20})));
     EXPECT_EQ(through.groupOf(0), through.groupOf(2));
     EXPECT_EQ(through.groupOf(0), through.groupOf(1));
     sorter.clearRule(PartId(1u), PartId(2u));
-    sorter.setTransform(PartId(0u), shifted({0, 0, 0}));
+    sorter.setTransform(PartId(0u), translation({0, 0, 0}));
     EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, 20}))), (std::vector<Group>{{0, 1, 2, 3}}));
   }
 }
@@ -197,11 +197,11 @@ TEST(LayerSorterRules, AStaticPartMovesOnlyBeforeItIsSorted) {
   LayerSorter sorter;
   const PartId still = addMade(sorter, solid(shapes::cube(), {.is_static = true}));
   const PartId other = addMade(sorter, solid(shapes::cube({0, 0, -3})));
-  EXPECT_TRUE(sorter.setTransform(still, shifted({0, 0, 3})));
-  EXPECT_TRUE(sorter.setTransform(still, shifted({0, 0, -6})));
+  EXPECT_TRUE(sorter.setTransform(still, translation({0, 0, 3})));
+  EXPECT_TRUE(sorter.setTransform(still, translation({0, 0, -6})));
   EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, 9}))), (std::vector<Group>{{1}, {0}}));
-  EXPECT_FALSE(sorter.setTransform(still, shifted({0, 0, 3})));
-  EXPECT_TRUE(sorter.setTransform(other, shifted({0, 0, 1})));
+  EXPECT_FALSE(sorter.setTransform(still, translation({0, 0, 3})));
+  EXPECT_TRUE(sorter.setTransform(other, translation({0, 0, 1})));
   EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, 9}))), (std::vector<Group>{{1}, {0}}));
 }
 

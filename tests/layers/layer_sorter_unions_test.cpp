@@ -30,7 +30,7 @@ MadePart squareFrame(Random& random, int reach) {
       }
     }
   }
-  part.world_from_part = shifted(shapes::randomGrid(random, 1, reach)[0]);
+  part.world_from_part = translation(shapes::randomGrid(random, 1, reach)[0]);
   return part;
 }
 
@@ -89,7 +89,7 @@ TEST(LayerSorterUnions, FewPairsOfTheHullsOfTwoPartsAreTested) {
   LayerSorter sorter({.arcs = LayerArcs::kAll});
   const std::vector<HullId> hulls = wheel(sorter, 64);
   const PartId near = sorter.addPart(hulls), far = sorter.addPart(hulls);
-  sorter.setTransform(far, shifted({0.8, 0.0, -3.0}));
+  sorter.setTransform(far, translation({0.8, 0.0, -3.0}));
   const LayerOrder& order = sorter.update(viewFrom({0.0, 0.0, 8.0}));
   ASSERT_EQ(order.arcs.size(), 1u);
   EXPECT_EQ(order.arcs[0].front, near);

@@ -19,11 +19,13 @@
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 #include "tests/support/strong_components.h"
+#include "tests/support/translation.h"
 
 namespace sightline::made {
 
 using shapes::Points;
 using shapes::Random;
+using test::translation;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;  // two parts: front and back
 using Group = std::vector<std::uint32_t>;              // parts of a group, ascending
 
@@ -290,14 +292,6 @@ inline Points randomHull(Random& random) {
     default:
       return shapes::randomGrid(random, 4 + random.below(4), 1 + static_cast<int>(random.below(2)));
   }
-}
-
-inline Mat4 shifted(const Vec3d& by) {
-  Mat4 m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m(axis, 3) = by[axis];
-  }
-  return m;
 }
 
 // Returns a translation by whole numbers; one in three also turns, stretches or shears by whole numbers.

@@ -13,6 +13,7 @@
 #include "tests/support/made_surfaces.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/rounds.h"
+#include "tests/support/translation.h"
 
 namespace sightline {
 namespace {
@@ -25,6 +26,7 @@ using test::kDrawAll;
 using test::ProvedPixels;
 using test::provePixels;
 using test::sheet;
+using test::translation;
 
 // A box of a few pixels far behind (x, y, -10).
 Box behind(float x, float y) {
@@ -117,14 +119,6 @@ TEST(SurfaceTargets, WhatHidMostComesFirstInTheNextView) {
   EXPECT_EQ(raster.surfaceStats().groups, 0u) << "it is drawn once in a view";
 }
 
-Mat4 movedBy(const Vec3d& by) {
-  Mat4 m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m(axis, 3) = by[axis];
-  }
-  return m;
-}
-
 TEST(SurfaceTargets, AreOfAllSetsThatAreDrawnWhereverTheseAre) {
   Scene scene;
   addWall(scene, addMaterial(scene, Opacity::kOpaque, true), 0.0f, -3.0f, 3.0f, -9.0f, 9.0f);
@@ -134,7 +128,7 @@ TEST(SurfaceTargets, AreOfAllSetsThatAreDrawnWhereverTheseAre) {
   std::vector<Box> targets{behind(5.0f, 0.0f)};
   drawing.targets = targets;
   const auto groupsAt = [&](double x, double z) {
-    return raster.draw(MovingSurfaces{&surfaces, movedBy({x, 0.0, z})}, drawing).groups;
+    return raster.draw(MovingSurfaces{&surfaces, translation({x, 0.0, z})}, drawing).groups;
   };
   raster.begin(frontView());
   EXPECT_EQ(groupsAt(-5.0, -10.0), 0u) << "beside the target";
@@ -164,7 +158,7 @@ TEST(SurfaceTargets, EachOfSeveralSetsRemembersWhatWasOfUse) {
   SurfaceDrawing drawing = kDrawAll;
   drawing.targets = targets;
   const auto groups = [&](const SurfaceSet& set) {
-    const MovingSurfaces placed{&set, movedBy({&set == &left ? -5.0 : 5.0, 0.0, 0.0})};
+    const MovingSurfaces placed{&set, translation({&set == &left ? -5.0 : 5.0, 0.0, 0.0})};
     return raster.draw(placed, set.objects, drawing).groups;
   };
   raster.begin(frontView());

@@ -11,22 +11,16 @@
 #include "tests/render/largest_difference.h"
 #include "tests/render/test_scene.h"
 #include "tests/support/not_finite.h"
+#include "tests/support/translation.h"
 
 namespace sightline {
 namespace {
 
 constexpr std::uint32_t kReuseWidth = 96, kReuseHeight = 72;
 using test::kNan;
+using test::translation;
 // The size of a pixel in metres, ten metres from the eye, where the picture is ten metres high.
 constexpr double kPixel = 10.0 / kReuseHeight;
-
-Mat4 shifted(double x, double y, double z) {
-  Mat4 m;
-  m(0, 3) = x;
-  m(1, 3) = y;
-  m(2, 3) = z;
-  return m;
-}
 
 // A rotation about the y axis.
 Mat4 turned(double angle) {
@@ -156,7 +150,7 @@ TEST_F(LayerReuseTest, PlaneMovedParallelToThePictureIsShiftedExactly) {
     view.shift_x = 0.02 * down;
     view.shift_y = 0.01 * right;
     EXPECT_TRUE(reused.drawFrame(view, {Mat4{}}, ids({0})));
-    EXPECT_FALSE(reused.drawFrame(view, {shifted(right * kPixel, -down * kPixel, 0.0)}, ids({0})));
+    EXPECT_FALSE(reused.drawFrame(view, {translation({right * kPixel, -down * kPixel, 0.0})}, ids({0})));
     // The light of the wall is the same; haze differs a little with the distance from the eye.
     EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3) << right << ' ' << down;
     EXPECT_GT(covered(reused.image), 300.0);
@@ -178,7 +172,7 @@ TEST_F(LayerReuseTest, ParallelMovementByPartsOfAPixelMovesTheMiddleOfWhatIsCove
   };
   const auto before = middle();
   const double area = covered(reused.image);
-  EXPECT_FALSE(reused.drawFrame(testView(), {shifted(3.3 * kPixel, -1.6 * kPixel, 0.0)}, ids({0})));
+  EXPECT_FALSE(reused.drawFrame(testView(), {translation({3.3 * kPixel, -1.6 * kPixel, 0.0})}, ids({0})));
   const auto after = middle();
   EXPECT_NEAR(after.first - before.first, 3.3, 1e-3);
   EXPECT_NEAR(after.second - before.second, 1.6, 1e-3);
@@ -191,7 +185,7 @@ TEST_F(LayerReuseTest, ToleranceOfZeroDrawsWhatHasMovedAndNothingElse) {
   Reused reused(maker.scene, {.tolerance_px = 0.0});
   LayerImage first;
   for (int frame = 0; frame < 4; ++frame) {
-    reused.begin(testView(), {shifted(0.01 * frame, 0, 0), Mat4{}});
+    reused.begin(testView(), {translation({0.01 * frame, 0, 0}), Mat4{}});
     EXPECT_TRUE(reused.draw(ids({0})));
     EXPECT_EQ(reused.draw(ids({1})), frame == 0);
     if (frame == 0) {
@@ -284,14 +278,14 @@ TEST_F(LayerReuseTest, LayersThatEndInsideThePictureNeedNoGuardBand) {
 TEST_F(LayerReuseTest, LayerIsDrawnWhenAnObjectOfItComesIntoView) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
   maker.box({-0.4f, -0.4f, -0.4f}, {0.4f, 0.4f, 0.4f}, kGreen);
-  for (const Mat4& outside : {shifted(30, 0, 0), shifted(-30, 0, 0), shifted(0, 0, 40)}) {
+  for (const Mat4& outside : {translation({30, 0, 0}), translation({-30, 0, 0}), translation({0, 0, 40})}) {
     Reused reused(maker.scene, {.tolerance_px = 50.0});
     EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, outside}, ids({0, 1})));
     // It moves, but still where nobody sees it.
     Mat4 elsewhere = outside;
     elsewhere(1, 3) = 1.0;
     EXPECT_FALSE(reused.drawFrame(testView(), {Mat4{}, elsewhere}, ids({0, 1})));
-    EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, shifted(3, 0, 0)}, ids({0, 1})));
+    EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, translation({3, 0, 0})}, ids({0, 1})));
     EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
   }
 }
@@ -342,8 +336,8 @@ TEST_F(LayerReuseTest, LayersOutsideTheViewCostNothing) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
   maker.scene.objects.back().index_count = 0;
   Reused reused(maker.scene, {});
-  for (const Mat4& outside :
-       {shifted(30, 0, 0), shifted(0, -20, 0), shifted(0, 0, 40), shifted(0, 0, -2000)}) {
+  for (const Mat4& outside : {translation({30, 0, 0}), translation({0, -20, 0}), translation({0, 0, 40}),
+                              translation({0, 0, -2000})}) {
     EXPECT_FALSE(reused.drawFrame(testView(), {outside}, ids({0})));
     EXPECT_EQ(reused.image.pixels, std::vector<ShapedPixel>(kReuseWidth * kReuseHeight));
   }
@@ -438,8 +432,8 @@ TEST_F(LayerReuseTest, WhatCrossesTheNearPlaneIsDrawnEachTime) {
     EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
   }
   // It comes there from before the eye.
-  EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, shifted(0, 0, 2)}, ids({1})));
-  EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, shifted(0, 0, 9.5)}, ids({1})));
+  EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, translation({0, 0, 2})}, ids({1})));
+  EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, translation({0, 0, 9.5})}, ids({1})));
 }
 
 TEST_F(LayerReuseTest, WhatIsNotFiniteIsDrawnEachTimeAndHarmsNothingElse) {

@@ -14,9 +14,12 @@
 
 #include "tests/render/largest_difference.h"
 #include "tests/render/test_scene.h"
+#include "tests/support/translation.h"
 
 namespace sightline {
 namespace {
+
+using test::translation;
 
 constexpr std::uint32_t kLensWidth = 128, kLensHeight = 96;
 constexpr std::array kMethods{LensMethod::kLayers, LensMethod::kSingleNormalised, LensMethod::kSingleSpread,
@@ -35,14 +38,6 @@ FrameLayers layersOf(std::initializer_list<std::vector<ObjectId>> lists) {
     layers.first_layer.push_back(static_cast<std::uint32_t>(layers.first_layer.size()));
   }
   return layers;
-}
-
-Mat4 movedBy(const Vec3d& d) {
-  Mat4 m;
-  m(0, 3) = d.x;
-  m(1, 3) = d.y;
-  m(2, 3) = d.z;
-  return m;
 }
 
 // The difference of colours over the pixels for which `counts` is true.
@@ -352,7 +347,7 @@ class MovingThing : public LensPictureTest {
 };
 
 TEST_F(MovingThing, IsSpreadAsTheReferenceInTimeSpreadsIt) {
-  moveTo(movedBy({2.0, 0.7, 0.0}));
+  moveTo(translation({2.0, 0.7, 0.0}));
   const std::vector<ObjectId> all{mover_, backdrop_};
   const LayerImage still = sharp(all);
   const double unblurred = rmsOf(still, by(LensMethod::kAccumulation));
@@ -370,7 +365,7 @@ TEST_F(MovingThing, IsSpreadAsTheReferenceInTimeSpreadsIt) {
 }
 
 TEST_F(MovingThing, LeavesWhatStandsAsItWas) {
-  moveTo(movedBy({2.0, 0.0, 0.0}));
+  moveTo(translation({2.0, 0.0, 0.0}));
   settings_.sky = false;
   layers_ = layersOf({{backdrop_}});
   LayerImage picture;
@@ -380,11 +375,11 @@ TEST_F(MovingThing, LeavesWhatStandsAsItWas) {
 }
 
 TEST_F(MovingThing, LeavesTheTransformsOfTheFrame) {
-  now_ = {movedBy({-1.0, 0.0, 0.0}), Mat4{}};
+  now_ = {translation({-1.0, 0.0, 0.0}), Mat4{}};
   renderer_->setTransforms(now_);
   const std::vector<ObjectId> all{mover_, backdrop_};
   const LayerImage before = sharp(all);
-  moveTo(movedBy({1.0, 0.0, 0.0}));
+  moveTo(translation({1.0, 0.0, 0.0}));
   for (const LensMethod method : {LensMethod::kAccumulation, LensMethod::kLayers}) {
     by(method);
     EXPECT_EQ(sharp(all).pixels, before.pixels);
@@ -427,7 +422,7 @@ TEST_F(MovingThing, ThatTurnsIsBlurredOnlyWhereItIsAccumulated) {
 }
 
 TEST_F(MovingThing, BadSettingsAreRefused) {
-  moveTo(movedBy({1.0, 0.0, 0.0}));
+  moveTo(translation({1.0, 0.0, 0.0}));
   LensSettings settings = settings_;
   settings.passes = 0;
   EXPECT_NE(errorOf(layers_, settings), "");
@@ -457,7 +452,7 @@ TEST_F(MovingThing, BadSettingsAreRefused) {
 
 TEST_F(MovingThing, ThatIsNowhereHarmsNothing) {
   const double nan = std::nan("");
-  for (const Mat4& nowhere : {movedBy({nan, 0.0, 0.0}), movedBy({0.0, 0.0, 1e9}), Mat4{.m = {}}}) {
+  for (const Mat4& nowhere : {translation({nan, 0.0, 0.0}), translation({0.0, 0.0, 1e9}), Mat4{.m = {}}}) {
     for (const LensMethod method : {LensMethod::kLayers, LensMethod::kAccumulation}) {
       moveTo(nowhere);
       for (const ShapedPixel& pixel : by(method).pixels) {
