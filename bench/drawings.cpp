@@ -124,7 +124,8 @@ class Projector {
       polygon.push_back({point});
     }
     for (const Plane& plane : frustum_.planes) {
-      if (!clipConvex(polygon, scratch, Corner{}, [&](const Vec3d& p) { return plane.evaluate(p); })) {
+      if (!geometry::clipConvex(polygon, scratch, Corner{},
+                                [&](const Vec3d& p) { return plane.evaluate(p); })) {
         return std::nullopt;
       }
     }

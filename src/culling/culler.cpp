@@ -263,7 +263,7 @@ Culler& Culler::operator=(Culler&&) noexcept = default;
 void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const OccluderSet* moving,
                   std::span<const MovingSurfaces> moving_surfaces) {
   View view = given;
-  const char* fault = makeUsable(view);
+  const char* fault = scene::makeUsable(view);
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
   impl_->stats.view_fault = fault;

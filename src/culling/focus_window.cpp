@@ -34,7 +34,7 @@ bool FocusWindow::place(const View& whole, std::uint32_t width, std::uint32_t he
   view_.tan_half_fovy *= part_y;
   view_.ortho_height *= part_y;
   view_.aspect *= part_x / part_y;
-  fine_view_ = occlusion::OutlineView(PixelView(view_, fine_width, fine_height));
+  fine_view_ = occlusion::OutlineView(scene::PixelView(view_, fine_width, fine_height));
   return fine_view_.sane;
 }
 

@@ -174,7 +174,7 @@ bool ViewsToCome::plan() {
   viewers_.radius = spread_ * (1.0 + kRounding) + 0x1p-40 * maxComponent(abs(view_.eye));
   viewers_.near_distance = nearDistance(view_) * (1.0 + kRounding);
   left_ = views;
-  return makeUsable(wide_) == nullptr && takeHeld();
+  return scene::makeUsable(wide_) == nullptr && takeHeld();
 }
 
 // Widens what is shown by an angle to all sides, and makes it the picture of wide_. False: it is too wide.

@@ -86,9 +86,9 @@ GridPoint Outliner::onGrid(const Vec3d& p) const {
 // Clips polygon_ by these borders. False if nothing is left.
 bool Outliner::clip(std::uint32_t borders) {
   for (std::uint32_t border = 0; border < kBorders; ++border) {
-    if ((borders >> border & 1u) != 0 && !clipConvex(polygon_, scratch_, Corner{}, [&](const Vec3d& p) {
-          return borderDistance(border, p);
-        })) {
+    if ((borders >> border & 1u) != 0 &&
+        !geometry::clipConvex(polygon_, scratch_, Corner{},
+                              [&](const Vec3d& p) { return borderDistance(border, p); })) {
       return false;
     }
   }

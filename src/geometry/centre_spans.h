@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace sightline {
+namespace sightline::geometry {
 
 // A point in an image, pixels from its lower left corner.
 struct PixelPoint {
@@ -45,4 +45,4 @@ void forEachCentreSpan(std::span<const PixelPoint> corners, std::uint32_t width,
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::geometry

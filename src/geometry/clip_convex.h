@@ -7,7 +7,7 @@
 
 #include "sightline/math/vec3.h"
 
-namespace sightline {
+namespace sightline::geometry {
 
 // Keeps the part where distance(position) >= 0; distance is an affine function. Corner has `Vec3d position`,
 // and whatever else it has is taken to be of the edge that starts at it: the edge along the cut gets that of
@@ -68,4 +68,4 @@ DividedPolygon divideConvex(const std::vector<Vec3d>& polygon, Height&& height, 
   return divided;
 }
 
-}  // namespace sightline
+}  // namespace sightline::geometry

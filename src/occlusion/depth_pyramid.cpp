@@ -59,7 +59,7 @@ void DepthPyramid::build(const View& view, const OccluderSet& set, std::span<con
 void DepthPyramid::begin(const View& view, const ViewerRegion& viewers) {
   const DepthBufferView buffer = impl_->raster.depthBuffer();
   impl_->raster.begin(view, viewers);
-  impl_->view = OutlineView(PixelView(view, buffer.width, buffer.height));
+  impl_->view = OutlineView(scene::PixelView(view, buffer.width, buffer.height));
   impl_->projection = BoxProjection(impl_->view.view, buffer.width, buffer.height);
   impl_->finished = false;
 }

@@ -72,7 +72,7 @@ void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<co
 void OcclusionTree::build(const View& given, std::span<const ChosenOccluders> sets) {
   Impl& impl = *impl_;
   View view = given;
-  impl.usable_view = makeUsable(view) == nullptr;
+  impl.usable_view = scene::makeUsable(view) == nullptr;
   const TreeLimits limits{impl.modified(), impl.settings.clip_to_frustum, impl.settings.max_nodes};
   impl.takeFirst(sets);
   while (!impl.builder.build(view, impl.parts, limits, impl.tree) && impl.partSize() > 0) {

@@ -96,7 +96,7 @@ void OpacityMap::begin(const View& view) {
   impl_->stats = {};
   impl_->raster.begin(view);
   const DepthBufferView buffer = impl_->raster.depthBuffer();
-  impl_->projection = {PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height};
+  impl_->projection = {scene::PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height};
 }
 
 void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen,

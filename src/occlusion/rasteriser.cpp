@@ -123,7 +123,7 @@ struct Rasteriser::Impl {
   }
 
   // Draws surfaces in a space of their own. set_view: the view in it.
-  void draw(const SurfaceSet& set, const PixelView& set_view, std::span<const ObjectId> candidates,
+  void draw(const SurfaceSet& set, const scene::PixelView& set_view, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
     aimAt(drawing.targets);
     SurfaceMemory& memory = memories.of(set, views);
@@ -160,7 +160,7 @@ struct Rasteriser::Impl {
   RasterSettings settings;
   std::uint32_t stride = 0, bands = 0;
   std::vector<float> reciprocal_depth;
-  PixelView view;
+  scene::PixelView view;
   PolygonBuilder builder;
   // What is in the buffer: nothing at all, nothing but what the map knows of, or something else.
   enum class Contents : std::uint8_t { kNothing, kOfMap, kOther };
@@ -186,7 +186,7 @@ Rasteriser::Rasteriser(Rasteriser&&) noexcept = default;
 Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 
 void Rasteriser::begin(const View& view, const ViewerRegion& viewers) {
-  impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
+  impl_->view = scene::PixelView(view, impl_->settings.width, impl_->settings.height, viewers);
   fillBuffer(impl_->reciprocal_depth, kUncovered);
   impl_->contents = Impl::Contents::kNothing;
   ++impl_->views;

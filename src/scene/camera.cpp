@@ -25,7 +25,7 @@ Mat4 clipFromScene(const View& view) {
   Mat4 view_from_scene;
   Vec3d axes[3] = {view.right, view.up, -view.forward};
   for (Vec3d& axis : axes) {
-    makeUnit(axis);  // not makeUsable(): the picture of a left-handed view is mirrored
+    scene::makeUnit(axis);  // not makeUsable(): the picture of a left-handed view is mirrored
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -62,7 +62,7 @@ Mat4 clipFromScene(const View& view) {
 Frustum frustumOf(const View& given) {
   View view = given;
   Frustum frustum;
-  if (makeUsable(view) != nullptr) {
+  if (scene::makeUsable(view) != nullptr) {
     frustum.planes.fill({Vec3d(), 1.0});
     return frustum;
   }
@@ -95,7 +95,7 @@ Frustum frustumOf(const View& given) {
 
 double nearDistance(const View& given) {
   View view = given;
-  makeUsable(view);
+  scene::makeUsable(view);
   if (view.orthographic) {
     // The rays of an orthographic view start at any distance.
     return std::numeric_limits<double>::infinity();

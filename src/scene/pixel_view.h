@@ -16,7 +16,7 @@
 #include "sightline/scene/viewer_region.h"
 #include "src/scene/usable_view.h"
 
-namespace sightline {
+namespace sightline::scene {
 
 struct PixelView {
   Vec3d eye;
@@ -188,4 +188,4 @@ struct PixelView {
   bool valid_ = false;  // makeUsable() found no fault in the view
 };
 
-}  // namespace sightline
+}  // namespace sightline::scene

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace sightline {
+namespace sightline::scene {
 namespace {
 
 // Axes this close to unit length are used unchanged; single precision is four times better.
@@ -83,9 +83,13 @@ const char* makeUsable(View& view) {
   return nullptr;
 }
 
+}  // namespace sightline::scene
+
+namespace sightline {
+
 Result<View> validate(const View& view) {
   View usable = view;
-  if (const char* fault = makeUsable(usable)) {
+  if (const char* fault = scene::makeUsable(usable)) {
     return Error{fault};
   }
   return usable;

@@ -2,7 +2,7 @@
 
 #include "sightline/scene/camera.h"
 
-namespace sightline {
+namespace sightline::scene {
 
 // Normalises an axis unless it has unit length up to single precision. Returns false if it has no direction.
 bool makeUnit(Vec3d& axis);
@@ -11,4 +11,4 @@ bool makeUnit(Vec3d& axis);
 // null, or a static text that says what is wrong with the view, which is then unchanged.
 const char* makeUsable(View& view);
 
-}  // namespace sightline
+}  // namespace sightline::scene

@@ -198,8 +198,8 @@ void WorldEye::listAlone(const WorldData& data, const View& view, const SurfaceD
   }
   images_.resize(std::max(images_.size(), boxes_.size()));
   const DepthBufferView buffer = pyramid_.depthBuffer();
-  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height, boxes_,
-                          images_);
+  occlusion::projectBoxes(scene::PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
+                          boxes_, images_);
   for (std::size_t i = 0; i < alone_.size(); ++i) {
     const occlusion::PixelBox& image = images_[i];
     const bool near = image.place == occlusion::BoxPlace::kUnbounded;

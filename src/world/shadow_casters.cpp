@@ -86,11 +86,11 @@ struct ShadowCasters::Impl {
   explicit Impl(const ShadowCasterSettings& given)
       : pixels(std::clamp(given.mask_pixels, 1u, 1024u)), filter(given.filter), light(given.culler) {}
 
-  void drawReceivers(const WorldData& data, const PixelView& map, const WorldCuller::Impl& seen);
+  void drawReceivers(const WorldData& data, const scene::PixelView& map, const WorldCuller::Impl& seen);
   bool isBeforeSomething(const PixelBox& image) const;
-  void choose(const WorldData& data, const View& light_view, const PixelView& map,
+  void choose(const WorldData& data, const View& light_view, const scene::PixelView& map,
               std::span<const View> views);
-  void project(const PixelView& map) {
+  void project(const scene::PixelView& map) {
     images.resize(boxes.size());
     occlusion::projectBoxes(map, pixels, pixels, boxes, images);
   }
@@ -114,7 +114,7 @@ ShadowCasters::ShadowCasters(ShadowCasters&&) noexcept = default;
 ShadowCasters& ShadowCasters::operator=(ShadowCasters&&) noexcept = default;
 
 // Writes into each pixel of the mask how far from the light the camera may see something there.
-void ShadowCasters::Impl::drawReceivers(const WorldData& data, const PixelView& map,
+void ShadowCasters::Impl::drawReceivers(const WorldData& data, const scene::PixelView& map,
                                         const WorldCuller::Impl& seen) {
   const bool all = seen.counts.view_fault != nullptr;
   const bool any_place = all || std::any_of(seen.visible.begin(), seen.visible.end(),
@@ -167,7 +167,7 @@ bool ShadowCasters::Impl::isBeforeSomething(const PixelBox& image) const {
   return false;
 }
 
-void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, const PixelView& map,
+void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, const scene::PixelView& map,
                                  std::span<const View> views) {
   const Light from{light_view.orthographic, light_view.eye - data.origin, light_view.forward,
                    light_view.z_far - light_view.z_near};
@@ -206,14 +206,14 @@ void ShadowCasters::cull(const World& world, const View& light, const WorldCulle
   own.counts.seen_by_light = static_cast<std::uint32_t>(own.light.visible().size());
   View view = light;
   const WorldCuller::Impl& camera = *seen.impl_;
-  if (makeUsable(view) != nullptr) {
+  if (scene::makeUsable(view) != nullptr) {
     for (const InstanceId id : own.light.visible()) {
       own.casters.push_back(id);
       own.bits.insert(id.value);
     }
     return;
   }
-  const PixelView map(data.fromOrigin(view), own.pixels, own.pixels);
+  const scene::PixelView map(data.fromOrigin(view), own.pixels, own.pixels);
   own.drawReceivers(data, map, camera);
   own.choose(data, view, map,
              camera.counts.view_fault != nullptr ? std::span<const View>() : std::span(camera.views));

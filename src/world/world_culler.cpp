@@ -20,7 +20,7 @@ WorldCuller& WorldCuller::operator=(WorldCuller&&) noexcept = default;
 bool WorldCuller::Impl::takeViews(std::span<const View> given) {
   views.assign(given.begin(), given.end());
   for (View& view : views) {
-    if (const char* const fault = makeUsable(view)) {
+    if (const char* const fault = scene::makeUsable(view)) {
       counts.view_fault = fault;
       return false;
     }

@@ -52,7 +52,7 @@ bool aimAt(const Vec3d& from, const Box& box, const Vec3d& origin, double near, 
   view.aspect = std::max(kMargin * wide, kNarrowest) / view.tan_half_fovy;
   view.z_near = near;
   view.z_far = kMargin * far;
-  return nearest > near && std::max(wide, high) < kWidest && makeUsable(view) == nullptr;
+  return nearest > near && std::max(wide, high) < kWidest && scene::makeUsable(view) == nullptr;
 }
 
 }  // namespace

@@ -60,14 +60,14 @@ double depthAlong(const OccluderSet& set, const Occluder& occluder, const Vec3d&
 }
 
 // A ray with a depth of 1 along forward, for the pixel (x, y) counted from the lower left corner.
-Vec3d rayThrough(const PixelView& view, std::uint32_t pixel) {
+Vec3d rayThrough(const scene::PixelView& view, std::uint32_t pixel) {
   const double t = std::tan(kShape.view_angle_deg * std::numbers::pi / 360.0);
   const double u = (2.0 * (pixel % kShape.resolution + 0.5) / kShape.resolution - 1.0) * t;
   const double v = (2.0 * (pixel / kShape.resolution + 0.5) / kShape.resolution - 1.0) * t;
   return view.forward + view.right * u + view.up * v;
 }
 
-double nearestDepth(const Box& box, const PixelView& view) {
+double nearestDepth(const Box& box, const scene::PixelView& view) {
   double nearest = 1e300;
   for (int i = 0; i < 8; ++i) {
     const Vec3d corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
@@ -78,8 +78,8 @@ double nearestDepth(const Box& box, const PixelView& view) {
 }
 
 // Who is in front of the depth in a pixel.
-std::set<std::uint32_t> frontOf(const Model& model, const PixelView& view, std::uint32_t pixel, double depth,
-                                bool& unsure) {
+std::set<std::uint32_t> frontOf(const Model& model, const scene::PixelView& view, std::uint32_t pixel,
+                                double depth, bool& unsure) {
   std::set<std::uint32_t> front;
   for (std::uint32_t o = 0; o < model.set.occluders.size(); ++o) {
     const double at =
@@ -187,7 +187,7 @@ TEST(OccluderStack, HasARectangleAroundTheImageThatEndsAtThePicturesBorder) {
     const Model model = randomModel(random, 1, 20);
     const Vec3d eye = random.point(1.0), forward = normalized(random.point(1.0));
     const Pictured pictured(model, eye, forward);
-    const PixelView& view = pictured.picture.view();
+    const scene::PixelView& view = pictured.picture.view();
     std::set<std::uint32_t> in_picture;
     for (const Occludee& occludee : pictured.occludees) {
       in_picture.insert(occludee.node.value);

@@ -29,11 +29,11 @@ struct EdgeScene {
 
   // Where a column of the picture is at a depth, metres.
   double xAt(double pixel, double depth) const {
-    const PixelView buffer(view, kWidth, kHeight);
+    const scene::PixelView buffer(view, kWidth, kHeight);
     return (pixel - buffer.middle_x) / buffer.scale_x * (view.orthographic ? 1.0 : depth);
   }
   double yAt(double pixel, double depth) const {
-    const PixelView buffer(view, kWidth, kHeight);
+    const scene::PixelView buffer(view, kWidth, kHeight);
     return (pixel - buffer.middle_y) / buffer.scale_y * (view.orthographic ? 1.0 : depth);
   }
 

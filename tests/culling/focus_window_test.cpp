@@ -75,7 +75,7 @@ TEST(FocusWindow, FindsTheFinerPixelsOfEachPointOfAPixel) {
                             static_cast<std::uint16_t>(std::floor(random.in(range.y0, range.y1 + 0.99)))};
     ASSERT_TRUE(window.contains(pixel));
     const PixelRange fine = window.finePixels(pixel);
-    const PixelView coarse_view(view, kWidth, kHeight), fine_view(window.view(), kFine, kFine);
+    const scene::PixelView coarse_view(view, kWidth, kHeight), fine_view(window.view(), kFine, kFine);
     for (int k = 0; k < 8; ++k) {
       const double x = pixel.x + (k < 4 ? k & 1 : random.in(0, 1));
       const double y = pixel.y + (k < 4 ? k >> 1 : random.in(0, 1));

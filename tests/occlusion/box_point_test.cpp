@@ -17,7 +17,7 @@ constexpr std::uint32_t kColumns = 320, kRows = 180;
 struct Appearance {
   double x, y, depth;
 
-  Appearance(const PixelView& view, const Vec3d& point, const BufferPixel& pixel) {
+  Appearance(const scene::PixelView& view, const Vec3d& point, const BufferPixel& pixel) {
     const Vec3d camera = view.toCamera(point - view.eye);
     x = view.pixelX(camera) - pixel.x - 0.5;
     y = view.pixelY(camera) - pixel.y - 0.5;
@@ -30,7 +30,7 @@ struct Appearance {
 struct BoxAndPixel {
   explicit BoxAndPixel(std::uint64_t seed) : random(seed) {
     const View eye_view = randomView(random);
-    view = PixelView(eye_view, kColumns, kRows);
+    view = scene::PixelView(eye_view, kColumns, kRows);
     box = randomBox(random, eye_view);
     for (int axis = 0; axis < 3; ++axis) {
       point[axis] = random.in(box.min[axis], box.max[axis]);
@@ -53,7 +53,7 @@ struct BoxAndPixel {
   }
 
   ViewRandom random;
-  PixelView view;
+  scene::PixelView view;
   Box box;
   Vec3d point;  // of the box
   BufferPixel pixel;

@@ -76,7 +76,7 @@ SurfaceSet randomChains(test::ViewRandom& random, const View& view, std::size_t 
 }
 
 // The edges of some chains as one group.
-std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const PixelView& view, std::size_t first,
+std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const scene::PixelView& view, std::size_t first,
                               std::size_t count) {
   ChainEdges edges;
   edges.begin(set, view, view.near * (1.0 + 1e-6), {kChainWidth, kChainHeight});
@@ -103,7 +103,7 @@ TEST(ChainEdges, AreTheSameWithEveryInstructionSetAndInAnyCompany) {
   std::size_t edges = 0, cut = 0;
   for (int n = 0; n < 300; ++n) {
     const View given = test::randomView(random);
-    const PixelView view(given, kChainWidth, kChainHeight);
+    const scene::PixelView view(given, kChainWidth, kChainHeight);
     if (!view.sane()) {
       continue;
     }
@@ -138,9 +138,9 @@ TEST(ChainEdges, NothingBeforeTheClipDepthHasAnEdge) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.z_near = 1.0;
-  EXPECT_TRUE(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).empty());
+  EXPECT_TRUE(edgesOf(set, scene::PixelView(view, kChainWidth, kChainHeight), 0, 1).empty());
   view.z_near = 0.25;
-  EXPECT_EQ(edgesOf(set, PixelView(view, kChainWidth, kChainHeight), 0, 1).size(), 1u);
+  EXPECT_EQ(edgesOf(set, scene::PixelView(view, kChainWidth, kChainHeight), 0, 1).size(), 1u);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ struct Place {
 // The image of a box by brute force: its hull from the corners, its depth from rays and planes.
 class PlainBox {
  public:
-  PlainBox(const PixelView& view, const Box& box) : view_(view), box_(box) {
+  PlainBox(const scene::PixelView& view, const Box& box) : view_(view), box_(box) {
     for (unsigned corner = 0; corner < 8; ++corner) {
       Vec3d d;
       for (int axis = 0; axis < 3; ++axis) {
@@ -205,7 +205,7 @@ class PlainBox {
     axes_.push_back(axis);
   }
 
-  const PixelView& view_;
+  const scene::PixelView& view_;
   Box box_;
   std::vector<Place> corners_, hull_;
   std::vector<Axis> axes_;
@@ -218,7 +218,7 @@ struct Bed {
     const auto& size = sizes[random.below(5)];
     buffer = TestBuffer(size[0], size[1], size[2]);
     eye_view = randomView(random);
-    view = PixelView(eye_view, buffer.width, buffer.height);
+    view = scene::PixelView(eye_view, buffer.width, buffer.height);
     box = randomBox(random, eye_view);
     projectBoxes(view, buffer.width, buffer.height, {&box, 1}, {&image, 1});
   }
@@ -245,7 +245,7 @@ struct Bed {
   ViewRandom random;
   TestBuffer buffer;
   View eye_view;
-  PixelView view;
+  scene::PixelView view;
   Box box;
   PixelBox image;
 };

@@ -63,7 +63,7 @@ TEST(DepthPyramid, ABoxIsComparedByItsOwnDepthInEachPixelNotByItsNearestPoint) {
   const DepthPyramid pyramid = pyramidOf(walls, view);
   const DepthBufferView buffer = pyramid.depthBuffer();
   occlusion::PixelBox image;
-  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
+  occlusion::projectBoxes(scene::PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
                           {&box, 1}, {&image, 1});
   ASSERT_EQ(image.place, occlusion::BoxPlace::kOnBuffer);
   int before_nearest = 0, pixels = 0;
@@ -255,7 +255,7 @@ TEST_P(DepthPyramidFamilies, NothingIsBeforeABoxThatIsVisible) {
       ++visible;
       // The buffer in its centre's pixel is not nearer than its centre.
       const DepthBufferView buffer = pyramid.depthBuffer();
-      const PixelView view(scene.view, buffer.width, buffer.height);
+      const scene::PixelView view(scene.view, buffer.width, buffer.height);
       const Vec3d camera = view.toCamera(center(box) - view.eye);
       const double x = std::clamp(view.pixelX(camera), 0.0, buffer.width - 1.0);
       const double y = std::clamp(view.pixelY(camera), 0.0, buffer.height - 1.0);

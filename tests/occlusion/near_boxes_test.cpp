@@ -31,7 +31,7 @@ DepthPyramid pyramidOfWalls(std::span<const OraclePolygon> walls, const View& vi
 
 bool reachesNearPlane(const View& view, const DepthBufferView& buffer, const Box& box) {
   occlusion::PixelBox image;
-  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
+  occlusion::projectBoxes(scene::PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
                           {&box, 1}, {&image, 1});
   return image.place == occlusion::BoxPlace::kUnbounded;
 }

@@ -253,7 +253,7 @@ TEST(OpacityMap, TheSparseDepthMapComparesFewerPixels) {
 Visibility byScanning(const OpacityMap& map, const View& view, const Box& box) {
   const DepthBufferView pixels = map.depthBuffer();
   PixelBox image;
-  occlusion::projectBoxes(PixelView(view, pixels.width, pixels.height), pixels.width, pixels.height,
+  occlusion::projectBoxes(scene::PixelView(view, pixels.width, pixels.height), pixels.width, pixels.height,
                           {&box, 1}, {&image, 1});
   if (image.place != BoxPlace::kOnBuffer) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;

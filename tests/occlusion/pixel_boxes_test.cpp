@@ -28,7 +28,7 @@ struct Exact {
   Wide reach = 0;                      // sum of the largest magnitudes relative to the eye
   Wide beyond_side = -INFINITY;  // metres, about, that all of it is beyond one side of the view's volume
 
-  Exact(const PixelView& view, const Box& box) {
+  Exact(const scene::PixelView& view, const Box& box) {
     const auto dotted = [](const Vec3d& a, const Wide* d) { return a.x * d[0] + a.y * d[1] + a.z * d[2]; };
     const Wide left = view.middle_x / static_cast<Wide>(view.scale_x);
     const Wide right = (view.width - view.middle_x) / static_cast<Wide>(view.scale_x);
@@ -63,7 +63,7 @@ struct Exact {
 };
 
 // Rounding of a depth or position that is always allowed, metres.
-Wide roundingOf(const PixelView& view, const Exact& exact) {
+Wide roundingOf(const scene::PixelView& view, const Exact& exact) {
   const Vec3d eye = abs(view.eye);
   return 0x1p-19L * exact.reach + 0x1p-44L * (eye.x + eye.y + eye.z);
 }
@@ -72,7 +72,7 @@ std::uint32_t pixelOf(Wide at, std::uint32_t size) {
   return static_cast<std::uint32_t>(std::clamp<Wide>(std::floor(at), 0, size - 1));
 }
 
-PixelBox projectOne(const PixelView& view, const Box& box) {
+PixelBox projectOne(const scene::PixelView& view, const Box& box) {
   PixelBox image;
   projectBoxes(view, kPixelsWide, kPixelsHigh, {&box, 1}, {&image, 1});
   return image;
@@ -83,7 +83,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
   for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const PixelView view(eye_view, kPixelsWide, kPixelsHigh);
+    const scene::PixelView view(eye_view, kPixelsWide, kPixelsHigh);
     const Box box = randomBox(random, eye_view);
     const PixelBox image = projectOne(view, box);
     const Exact exact(view, box);
@@ -156,7 +156,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
 TEST(PixelBoxes, ABoxBesideTheEyeIsOutsideThoughItCrossesTheNearPlane) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  const PixelView pixels(view, kPixelsWide, kPixelsHigh);
+  const scene::PixelView pixels(view, kPixelsWide, kPixelsHigh);
   EXPECT_EQ(projectOne(pixels, {{5, -1, -2}, {6, 1, 2}}).place, BoxPlace::kOutside);
   EXPECT_EQ(projectOne(pixels, {{-1, -30, -2}, {1, -20, 2}}).place, BoxPlace::kOutside);
   EXPECT_EQ(projectOne(pixels, {{-1, -1, 1}, {1, 1, 2}}).place, BoxPlace::kOutside) << "behind the eye";
@@ -171,7 +171,7 @@ TEST(PixelBoxes, ABoxWhoseEdgesLieOnPixelBordersHasThePixelsOnBothSides) {
   view.orthographic = true;
   view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
   view.aspect = 320.0 / 180.0;
-  const PixelView pixels(view, kPixelsWide, kPixelsHigh);
+  const scene::PixelView pixels(view, kPixelsWide, kPixelsHigh);
   const PixelBox image = projectOne(pixels, {{-10, -20, -6}, {30, 5, -5}});
   ASSERT_EQ(image.place, BoxPlace::kOnBuffer);
   EXPECT_TRUE(image.whole);
@@ -195,7 +195,7 @@ TEST(PixelBoxes, BoxesThatAreNotWellFormedAndViewsThatSayNothingGiveNoRectangle)
   for (const bool orthographic : {false, true}) {
     view.orthographic = orthographic;
     for (const Box& box : bad) {
-      EXPECT_EQ(projectOne(PixelView(view, kPixelsWide, kPixelsHigh), box), PixelBox{});
+      EXPECT_EQ(projectOne(scene::PixelView(view, kPixelsWide, kPixelsHigh), box), PixelBox{});
     }
   }
   const Box good{{-1, -1, -5}, {1, 1, -4}};
@@ -205,13 +205,13 @@ TEST(PixelBoxes, BoxesThatAreNotWellFormedAndViewsThatSayNothingGiveNoRectangle)
       View strange;
       setOrientation(strange, {0, 0, -1}, {0, 1, 0});
       strange.*member = value;
-      EXPECT_EQ(projectOne(PixelView(strange, kPixelsWide, kPixelsHigh), good), PixelBox{});
+      EXPECT_EQ(projectOne(scene::PixelView(strange, kPixelsWide, kPixelsHigh), good), PixelBox{});
     }
   }
   View nowhere;
   setOrientation(nowhere, {0, 0, -1}, {0, 1, 0});
   nowhere.eye.y = nan;
-  EXPECT_EQ(projectOne(PixelView(nowhere, kPixelsWide, kPixelsHigh), good), PixelBox{});
+  EXPECT_EQ(projectOne(scene::PixelView(nowhere, kPixelsWide, kPixelsHigh), good), PixelBox{});
 }
 
 TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
@@ -220,7 +220,8 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const BoxProjection projection(PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
+    const BoxProjection projection(scene::PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide,
+                                   kPixelsHigh);
     std::vector<Box> boxes;
     for (std::uint64_t i = 0; i < 1 + seed % 70; ++i) {
       boxes.push_back(randomBox(random, eye_view));
@@ -259,7 +260,7 @@ TEST(PixelPoints, LieInTheirPixelsAndAreNoFartherThanTheySay) {
   for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const PixelView view(eye_view, kPixelsWide, kPixelsHigh);
+    const scene::PixelView view(eye_view, kPixelsWide, kPixelsHigh);
     const Vec3f point = randomPoint(random, randomBox(random, eye_view));
     PointImage image;
     projectPoints(BoxProjection(view, kPixelsWide, kPixelsHigh), {&point, 1}, {&image, 1});
@@ -293,7 +294,7 @@ TEST(PixelPoints, OnPixelBordersOrOutsideTheViewAreUnknown) {
   view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
   view.aspect = 320.0 / 180.0;
   view.z_far = 100.0;
-  const BoxProjection projection(PixelView(view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
+  const BoxProjection projection(scene::PixelView(view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
   const auto imageOf = [&](const Vec3f& point) {
     PointImage image;
     projectPoints(projection, {&point, 1}, {&image, 1});
@@ -319,7 +320,8 @@ TEST(PixelPoints, EveryInstructionSetAndEverySplitGiveTheSameBits) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
-    const BoxProjection projection(PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide, kPixelsHigh);
+    const BoxProjection projection(scene::PixelView(eye_view, kPixelsWide, kPixelsHigh), kPixelsWide,
+                                   kPixelsHigh);
     std::vector<Vec3f> points;
     for (std::uint64_t i = 0; i < 1 + seed % 70; ++i) {
       points.push_back(randomPoint(random, randomBox(random, eye_view)));

@@ -25,7 +25,7 @@ constexpr std::size_t kLines = 29;  // in each region; not a multiple of the lan
 
 struct SweptCase {
   View view;
-  PixelView pixels;
+  scene::PixelView pixels;
   double clip_depth = 0.0;
   CameraLines lines;
 };
@@ -77,7 +77,7 @@ SweptCase randomCase(std::uint64_t seed) {
   made.view = perspectiveView(random);
   constexpr std::uint32_t kSizes[][2] = {{320, 180}, {16, 9}, {1, 1}, {1024, 64}};
   const std::uint32_t(&size)[2] = kSizes[random.below(4)];
-  made.pixels = PixelView(made.view, size[0], size[1], randomRegion(random, made.view));
+  made.pixels = scene::PixelView(made.view, size[0], size[1], randomRegion(random, made.view));
   made.clip_depth = made.view.z_near * (1.0 + 1e-6);
   made.lines.reserve(kLines);
   for (std::size_t i = 0; i < kLines; ++i) {
@@ -99,7 +99,7 @@ SweptCase randomCase(std::uint64_t seed) {
 }
 
 // In 256ths of a pixel.
-GridPoint imageOf(const PixelView& view, const Vec3d& point) {
+GridPoint imageOf(const scene::PixelView& view, const Vec3d& point) {
   return {(view.middle_x + view.scale_x * point.x / point.z) * kGridStep,
           (view.middle_y + view.scale_y * point.y / point.z) * kGridStep};
 }
@@ -120,7 +120,7 @@ Vec3d viewerOf(test::ViewRandom& random, const ViewerRegion& region) {
          around * (region.radius * (1.0 - 1e-12) / std::max(length(around), 1e-3));
 }
 
-GridLines imagesOf(const PixelView& view, const CameraLines& lines, std::size_t count) {
+GridLines imagesOf(const scene::PixelView& view, const CameraLines& lines, std::size_t count) {
   GridLines images;
   images.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -156,7 +156,7 @@ std::pair<double, double> placesIn(const BoundaryEdge& edge, double width, std::
 // Looks where points of a line are in the buffer as they move. `edge` was prepared from its line on the grid.
 void judge(const SweptCase& made, std::size_t i, const GridSweeps& sweeps, const BoundaryEdge& edge,
            test::ViewRandom& random, Counts& counts, const std::string& where) {
-  const PixelView& view = made.pixels;
+  const scene::PixelView& view = made.pixels;
   const Vec3d from = made.lines.from.point(i), to = made.lines.to.point(i);
   const GridPoint begin = rounded(imageOf(view, from)), end = rounded(imageOf(view, to));
   const double height = end.y - begin.y, slope = (end.x - begin.x) / height;
@@ -379,7 +379,7 @@ TEST(SweptLines, AreTightAroundWhatIsSeenFarAway) {
   view.z_near = 0.1;
   constexpr std::uint32_t kSize = 200;
   // The viewer may be up to a metre to the right: what is 10 metres away is swept by 10 pixels to the left.
-  const PixelView pixels(view, kSize, kSize, {.offsets = {Vec3d(1, 0, 0), Vec3d()}});
+  const scene::PixelView pixels(view, kSize, kSize, {.offsets = {Vec3d(1, 0, 0), Vec3d()}});
   CameraLines lines;
   lines.reserve(2);
   lines.set(0, {0, -1, 10}, {0, 1, 10});

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -72,6 +74,28 @@ bool isSource(const std::string& file) {
   return extension == ".h" || extension == ".cpp";
 }
 
+// The types and functions whose lines begin at the left margin; of a type within another, as "Outer::Inner",
+// the outer one.
+std::set<std::string> namesAtTheMargin(const std::string& file) {
+  static const std::regex kType(R"(^(?:template\s*<.*>\s*)?(?:enum\s+)?(?:class|struct)\s+(\w+).*)");
+  static const std::regex kAlias(R"(^using\s+(\w+)\s*=.*)");
+  static const std::regex kFunction(R"(^(?!template|using|namespace|static_assert)[A-Za-z][^(=]*?(\w+)\(.*)");
+  std::set<std::string> names;
+  std::istringstream lines(contentOf(file));
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, kType) || std::regex_match(line, match, kAlias) ||
+        std::regex_match(line, match, kFunction)) {
+      names.insert(match.str(1));
+    }
+  }
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 TEST(Namespaces, AFileOpensThatOfTheLibraryAndThatOfItsRoomAlone) {
   std::size_t files = 0;
   for (const std::string& file : projectFiles()) {
@@ -87,6 +111,31 @@ TEST(Namespaces, AFileOpensThatOfTheLibraryAndThatOfItsRoomAlone) {
     }
   }
   EXPECT_GT(files, 20u) << "the sources were not found";
+}
+
+// A private header may say in the library's namespace what a public header has only named: the members of a
+// class, or an interface.
+TEST(Namespaces, APrivateHeaderDefinesNothingInThatOfTheLibraryThatNoPublicHeaderDeclares) {
+  std::set<std::string> public_names;
+  std::vector<std::string> private_headers;
+  for (const std::string& file : projectFiles()) {
+    if (std::filesystem::path(file).extension() != ".h") {
+      continue;
+    }
+    if (folderAt(file, 0) == "include") {
+      public_names.merge(namesAtTheMargin(file));
+    } else if (folderAt(file, 0) == "src" && contains(openedNamespaces(file), "sightline")) {
+      private_headers.push_back(file);
+    }
+  }
+  EXPECT_GT(public_names.size(), 100u) << "the public headers were not found";
+  EXPECT_FALSE(private_headers.empty()) << "src/layers/extents/candidate_search.h was not found";
+  for (const std::string& file : private_headers) {
+    for (const std::string& name : namesAtTheMargin(file)) {
+      EXPECT_TRUE(public_names.count(name) > 0)
+          << file << " defines " << name << ", which is private to " << privateNamespace(file);
+    }
+  }
 }
 
 TEST(Namespaces, OnlyHighwayAndScenesAndToolsDivideTheirsFurther) {

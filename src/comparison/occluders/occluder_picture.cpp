@@ -18,11 +18,11 @@ namespace {
 constexpr double kFarthest = 1e12;  // metres; beyond it everything has the same reciprocal depth
 
 // The area of a polygon in the picture, in pixels, by the shoelace formula.
-double areaOf(std::span<const PixelPoint> corners) {
+double areaOf(std::span<const geometry::PixelPoint> corners) {
   double twice = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const PixelPoint& a = corners[i];
-    const PixelPoint& b = corners[i + 1 < corners.size() ? i + 1 : 0];
+    const geometry::PixelPoint& a = corners[i];
+    const geometry::PixelPoint& b = corners[i + 1 < corners.size() ? i + 1 : 0];
     twice += a.x * b.y - b.x * a.y;
   }
   return 0.5 * std::abs(twice);
@@ -30,7 +30,7 @@ double areaOf(std::span<const PixelPoint> corners) {
 
 }  // namespace
 
-PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape& shape) {
+scene::PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape& shape) {
   View view;
   view.eye = eye;
   setOrientation(view, forward, Vec3d(0.0, 1.0, 0.0));
@@ -38,7 +38,7 @@ PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape
   view.aspect = 1.0;
   view.z_near = shape.near;
   view.z_far = kFarthest;
-  return PixelView(view, shape.resolution, shape.resolution);
+  return scene::PixelView(view, shape.resolution, shape.resolution);
 }
 
 void OccluderPicture::draw(const OccluderSet& set, std::span<const NearOccluder> candidates, const Vec3d& eye,
@@ -70,11 +70,11 @@ bool OccluderPicture::inPicture(const Vec3d& center, double radius) const {
 bool OccluderPicture::clip() {
   const Corner cut{};
   const double t = tan_half_, near = view_.near;
-  return clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return p.z - near; }) &&
-         clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z - p.x; }) &&
-         clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z + p.x; }) &&
-         clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z - p.y; }) &&
-         clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z + p.y; });
+  return geometry::clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return p.z - near; }) &&
+         geometry::clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z - p.x; }) &&
+         geometry::clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z + p.x; }) &&
+         geometry::clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z - p.y; }) &&
+         geometry::clipConvex(polygon_, scratch_, cut, [=](const Vec3d& p) { return t * p.z + p.y; });
 }
 
 void OccluderPicture::drawOne(const OccluderSet& set, const NearOccluder& candidate, double min_area) {
@@ -97,12 +97,12 @@ void OccluderPicture::drawOne(const OccluderSet& set, const NearOccluder& candid
     return;
   }
   shown.first_span = static_cast<std::uint32_t>(spans_.size());
-  forEachCentreSpan(corners_px_, resolution_, resolution_,
-                    [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
-                      spans_.push_back({static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(first),
-                                        static_cast<std::uint16_t>(last)});
-                      shown.pixels += last - first + 1;
-                    });
+  geometry::forEachCentreSpan(
+      corners_px_, resolution_, resolution_, [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
+        spans_.push_back({static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(first),
+                          static_cast<std::uint16_t>(last)});
+        shown.pixels += last - first + 1;
+      });
   shown.span_count = static_cast<std::uint32_t>(spans_.size()) - shown.first_span;
   if (shown.pixels == 0) {
     return;

@@ -25,7 +25,7 @@ struct PictureShape {
   double near = 0.1;               // metres
 };
 
-PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape& shape);
+scene::PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape& shape);
 
 // Pixels first to last of row y.
 struct PixelSpan {
@@ -50,7 +50,7 @@ class OccluderPicture {
   void draw(const OccluderSet& set, std::span<const NearOccluder> candidates, const Vec3d& eye,
             const Vec3d& forward, const PictureShape& shape, double min_area);
 
-  const PixelView& view() const { return view_; }
+  const scene::PixelView& view() const { return view_; }
   std::uint32_t resolution() const { return resolution_; }
   std::uint32_t pixelCount() const { return resolution_ * resolution_; }
   std::span<const ShownOccluder> occluders() const { return shown_; }
@@ -81,14 +81,14 @@ class OccluderPicture {
         reciprocal_depth < highest_ ? (reciprocal_depth > lowest_ ? reciprocal_depth : lowest_) : highest_);
   }
 
-  PixelView view_;
+  scene::PixelView view_;
   std::uint32_t resolution_ = 0;
   double tan_half_ = 1.0, side_length_ = 1.0;  // of the half angle; of a side plane's normal
   double highest_ = 1.0, lowest_ = 1.0;        // reciprocal depth
   std::vector<ShownOccluder> shown_;
   std::vector<PixelSpan> spans_;
   std::vector<Corner> polygon_, scratch_;
-  std::vector<PixelPoint> corners_px_;
+  std::vector<geometry::PixelPoint> corners_px_;
 };
 
 }  // namespace sightline::comparison

@@ -20,7 +20,7 @@ constexpr double kInFront = 1.0 + 0x1p-17;
 constexpr std::uint32_t kMaxLayers = 64;  // of a pixel
 
 // False: not in the picture, or not wholly beyond the near plane.
-bool project(const Box& box, const PixelView& view, std::uint32_t resolution, Occludee& occludee) {
+bool project(const Box& box, const scene::PixelView& view, std::uint32_t resolution, Occludee& occludee) {
   const double infinity = std::numeric_limits<double>::infinity();
   double left = infinity, right = -infinity, low = infinity, high = -infinity, nearest = infinity;
   for (int i = 0; i < 8; ++i) {
@@ -78,8 +78,9 @@ std::vector<NodeIndex> findOccludees(const Hierarchy& hierarchy, std::uint32_t m
   return found;
 }
 
-void occludeesInPicture(const Hierarchy& hierarchy, std::span<const NodeIndex> nodes, const PixelView& view,
-                        std::uint32_t resolution, std::vector<Occludee>& found) {
+void occludeesInPicture(const Hierarchy& hierarchy, std::span<const NodeIndex> nodes,
+                        const scene::PixelView& view, std::uint32_t resolution,
+                        std::vector<Occludee>& found) {
   found.clear();
   for (const NodeIndex node : nodes) {
     Occludee occludee{node, {}, 0.0f};

@@ -32,8 +32,8 @@ std::vector<NodeIndex> findOccludees(const Hierarchy& hierarchy, std::uint32_t m
                                      std::uint32_t max_triangles);
 
 // Finds the nodes that are in the picture and wholly beyond its near plane, in the order given.
-void occludeesInPicture(const Hierarchy& hierarchy, std::span<const NodeIndex> nodes, const PixelView& view,
-                        std::uint32_t resolution, std::vector<Occludee>& found);
+void occludeesInPicture(const Hierarchy& hierarchy, std::span<const NodeIndex> nodes,
+                        const scene::PixelView& view, std::uint32_t resolution, std::vector<Occludee>& found);
 
 // Whether each pixel of the occludee's rectangle has an occluder in front of it. The look begins at
 // first_pixel; if the answer is no, first_pixel becomes a pixel that has none.

@@ -27,17 +27,17 @@ class CentreCoverage final : public CoverageRule {
                           const RasterBand& band) {
     const ReciprocalDepthPlane& plane = polygon.planes[0];
     const double at_first_centre = plane.at_origin + 0.5 * (plane.along_x + plane.along_y);
-    forEachCentreSpan(polygons.corners(polygon), band.width, band.end_row,
-                      [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
-                        if (y < band.first_row) {
-                          return;
-                        }
-                        float* row = band.reciprocal_depth + std::size_t{y} * band.stride;
-                        const double at_row = at_first_centre + plane.along_y * y;
-                        for (std::uint32_t x = first; x <= last; ++x) {
-                          row[x] = std::max(row[x], static_cast<float>(at_row + plane.along_x * x));
-                        }
-                      });
+    geometry::forEachCentreSpan(polygons.corners(polygon), band.width, band.end_row,
+                                [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
+                                  if (y < band.first_row) {
+                                    return;
+                                  }
+                                  float* row = band.reciprocal_depth + std::size_t{y} * band.stride;
+                                  const double at_row = at_first_centre + plane.along_y * y;
+                                  for (std::uint32_t x = first; x <= last; ++x) {
+                                    row[x] = std::max(row[x], static_cast<float>(at_row + plane.along_x * x));
+                                  }
+                                });
   }
 };
 

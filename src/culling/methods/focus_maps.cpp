@@ -146,7 +146,7 @@ void FocusMaps::projectAll(const View& view, std::span<const ObjectId> visible) 
     boxes_.push_back(scene_.object_bounds[object.value]);
   }
   images_.resize(boxes_.size());
-  occlusion::projectBoxes(PixelView(view, width_, height_), width_, height_, boxes_, images_);
+  occlusion::projectBoxes(scene::PixelView(view, width_, height_), width_, height_, boxes_, images_);
 }
 
 double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,

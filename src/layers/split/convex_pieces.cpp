@@ -80,7 +80,7 @@ void cut(const Polygon& polygon, int axis, double at, std::vector<Polygon>& belo
     between[axis] = at;
     return between;
   };
-  DividedPolygon divided = divideConvex(polygon, height, crossing);
+  geometry::DividedPolygon divided = geometry::divideConvex(polygon, height, crossing);
   if (divided.reaches_behind || !divided.reaches_front) {
     below.push_back(std::move(divided.behind));
   }

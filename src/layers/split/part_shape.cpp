@@ -89,7 +89,7 @@ void divide(const ShapePolygon& polygon, const Plane& plane, std::vector<ShapePo
   const auto crossing = [](const Vec3d& p, const Vec3d& q, double height_p, double height_q) {
     return p + (q - p) * (height_p / (height_p - height_q));
   };
-  DividedPolygon divided = divideConvex(polygon, height, crossing);
+  geometry::DividedPolygon divided = geometry::divideConvex(polygon, height, crossing);
   if (divided.reaches_front || !divided.reaches_behind) {
     in_front.push_back(std::move(divided.front));
   }

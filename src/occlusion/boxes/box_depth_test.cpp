@@ -324,7 +324,7 @@ HWY_INLINE double reachOf(const PixelBox& image, std::uint32_t level) {
 
 // Whether the buffer, in the pixel of the box's centre, is not before the box's farthest point. The outline
 // surely intersects that pixel. This settles most boxes that can be seen.
-HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, const Box& box,
+HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const scene::PixelView& view, const Box& box,
                              const PixelBox& image) {
   const Vec3d centre = view.toCamera(center(box) - view.eye);
   const double inverse = view.inverseDepth(centre);
@@ -348,7 +348,7 @@ bool hasOutline(const OutlineView& view, const Box& box) {
 
 // Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there is
 // one.
-void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+void setPoint(std::span<const DepthLevel> levels, const scene::PixelView& view, const Box& box,
               const std::optional<Cell>& open, Vec3f* seen_point) {
   if (open && seen_point != nullptr) {
     *seen_point = pointInPixel(view, box, farthestPixel(levels, *open));
@@ -360,7 +360,7 @@ void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const B
 // Where the box is not hidden, *seen_point becomes a point of it that may be seen, as in setPoint().
 bool hidesUnbounded(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                     Vec3f* seen_point) {
-  const PixelView& view = outline_view.view;
+  const scene::PixelView& view = outline_view.view;
   constexpr std::uint32_t kMaxRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
   if (!hasOutline(outline_view, box)) {
     return false;
@@ -398,7 +398,7 @@ struct Question {
 
 Visibility testOne(std::span<const DepthLevel> levels, const OutlineView& outline_view, const Box& box,
                    const PixelBox& image, const Question& question) {
-  const PixelView& view = outline_view.view;
+  const scene::PixelView& view = outline_view.view;
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }

@@ -152,7 +152,7 @@ std::array<OutlineEdges, geometry::kRegions> edgesOfRegions() {
   return table;
 }
 
-int regionOfEye(const PixelView& view, const EyeBox& box) {
+int regionOfEye(const scene::PixelView& view, const EyeBox& box) {
   if (!view.orthographic) {
     return geometry::regionOfOrigin(box.min, box.max);
   }
@@ -161,7 +161,7 @@ int regionOfEye(const PixelView& view, const EyeBox& box) {
   return digit(view.unit_z.x) + 3 * digit(view.unit_z.y) + 9 * digit(view.unit_z.z);
 }
 
-void setEdges(const PixelView& view, const EyeBox& box, int region, OutlineFactors& factors) {
+void setEdges(const scene::PixelView& view, const EyeBox& box, int region, OutlineFactors& factors) {
   static const std::array<OutlineEdges, geometry::kRegions> kEdges = edgesOfRegions();
   const OutlineEdges& edges = kEdges[static_cast<std::size_t>(region)];
   const Bounds bounds{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
@@ -184,7 +184,7 @@ void setEdges(const PixelView& view, const EyeBox& box, int region, OutlineFacto
   }
 }
 
-void setFaces(const PixelView& view, const EyeBox& box, int region, OutlineFactors& factors) {
+void setFaces(const scene::PixelView& view, const EyeBox& box, int region, OutlineFactors& factors) {
   for (int axis = 0; axis < 3; ++axis, region /= 3) {
     if (region % 3 == 0) {
       continue;
@@ -201,7 +201,7 @@ void setFaces(const PixelView& view, const EyeBox& box, int region, OutlineFacto
 
 }  // namespace
 
-OutlineView::OutlineView(const PixelView& pixel_view)
+OutlineView::OutlineView(const scene::PixelView& pixel_view)
     : view(pixel_view),
       sane(pixel_view.sane()),
       per_x(1.0 / pixel_view.scale_x),

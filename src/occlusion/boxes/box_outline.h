@@ -12,9 +12,9 @@ namespace sightline::occlusion {
 // What outlines need of a view, computed once for many boxes.
 struct OutlineView {
   OutlineView() = default;
-  explicit OutlineView(const PixelView& pixel_view);
+  explicit OutlineView(const scene::PixelView& pixel_view);
 
-  PixelView view;
+  scene::PixelView view;
   bool sane = false;                // see PixelView::sane()
   double per_x = 0.0, per_y = 0.0;  // change of tx and ty for a pixel, see box_outline.cpp
   // By coordinate of a function and by its slot: what it has of the slot's two factors.

@@ -18,7 +18,7 @@ struct Ray {
   }
 };
 
-Ray rayThrough(const PixelView& view, const BufferPixel& pixel) {
+Ray rayThrough(const scene::PixelView& view, const BufferPixel& pixel) {
   const Vec3d across = view.unit_x * ((pixel.x + 0.5 - view.middle_x) / view.scale_x) +
                        view.unit_y * ((pixel.y + 0.5 - view.middle_y) / view.scale_y);
   return view.orthographic ? Ray{across, view.unit_z} : Ray{{}, across + view.unit_z};
@@ -54,7 +54,7 @@ Vec3d pointNear(const EyeBox& box, const Ray& ray) {
 
 }  // namespace
 
-Vec3f pointInPixel(const PixelView& view, const Box& box, const BufferPixel& pixel) {
+Vec3f pointInPixel(const scene::PixelView& view, const Box& box, const BufferPixel& pixel) {
   const EyeBox eye_box = EyeBox::of(box, view.eye);
   const Ray ray = rayThrough(view, pixel);
   const Stretch stretch = stretchIn(eye_box, ray, view.near);

@@ -420,7 +420,7 @@ float roundedDown(double value) {
 
 }  // namespace
 
-BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std::uint32_t map_height)
+BoxProjection::BoxProjection(const scene::PixelView& view, std::uint32_t map_width, std::uint32_t map_height)
     : usable(view.sane() && map_width > 0 && map_height > 0), orthographic(view.orthographic) {
   if (!usable) {
     return;
@@ -458,7 +458,7 @@ void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, s
   HWY_DYNAMIC_DISPATCH(projectAll)(projection, boxes, images);
 }
 
-void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
+void projectBoxes(const scene::PixelView& view, std::uint32_t width, std::uint32_t height,
                   std::span<const Box> boxes, std::span<PixelBox> images) {
   projectBoxes(BoxProjection(view, width, height), boxes, images);
 }

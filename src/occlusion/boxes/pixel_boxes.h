@@ -52,7 +52,7 @@ struct BoxProjection {
   };
 
   BoxProjection() = default;  // every box is kUnbounded
-  BoxProjection(const PixelView& view, std::uint32_t width, std::uint32_t height);
+  BoxProjection(const scene::PixelView& view, std::uint32_t width, std::uint32_t height);
 
   bool usable = false;  // finite, and of sizes that cannot overflow
   bool orthographic = false;
@@ -68,7 +68,7 @@ struct BoxProjection {
 
 // images: as many as boxes. Every instruction set gives the same bits.
 void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, std::span<PixelBox> images);
-void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
+void projectBoxes(const scene::PixelView& view, std::uint32_t width, std::uint32_t height,
                   std::span<const Box> boxes, std::span<PixelBox> images);
 // images: as many as points. Every instruction set gives the same bits.
 void projectPoints(const BoxProjection& projection, std::span<const Vec3f> points,

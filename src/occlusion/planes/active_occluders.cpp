@@ -123,7 +123,7 @@ void ActiveOccluders::takeSources(std::span<const ChosenOccluders> sets) {
 
 void ActiveOccluders::build(const View& given, std::span<const ChosenOccluders> sets) {
   View view = given;
-  usable_view_ = makeUsable(view) == nullptr;
+  usable_view_ = scene::makeUsable(view) == nullptr;
   eye_ = Eye(view);
   takeSources(sets);
   occluders_.clear();

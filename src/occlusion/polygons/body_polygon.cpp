@@ -20,7 +20,7 @@ struct BodyVertices {
   double nearest = std::numeric_limits<double>::infinity();  // least depth, metres
 };
 
-BodyVertices verticesFrom(const PixelView& view, const Eye& eye, std::span<const Vec3f> vertices) {
+BodyVertices verticesFrom(const scene::PixelView& view, const Eye& eye, std::span<const Vec3f> vertices) {
   BodyVertices seen;
   double farthest_squared = 0.0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {

@@ -84,7 +84,7 @@ struct BufferPolygon {
 struct BufferPolygons {
   std::vector<BufferPolygon> polygons;
   std::vector<BufferEdge> edges;
-  std::vector<PixelPoint> points;
+  std::vector<geometry::PixelPoint> points;
   std::uint32_t considered = 0;  // chosen occluders, each body once; not all of them have polygons
 
   void clear() {
@@ -99,7 +99,7 @@ struct BufferPolygons {
   std::span<const BufferEdge> gaps(const BufferPolygon& p) const {
     return std::span(edges).subspan(p.first_edge + p.edge_count, p.gap_count);
   }
-  std::span<const PixelPoint> corners(const BufferPolygon& p) const {
+  std::span<const geometry::PixelPoint> corners(const BufferPolygon& p) const {
     return std::span(points).subspan(p.first_corner, p.edge_count);
   }
 };

@@ -43,7 +43,7 @@ void PolygonBuilder::activate(const PolygonProjection& projection, const Eye& ey
                               OccluderId id, OccluderId chosen) {
   const std::optional<EyeOccluder> seen = faceOccluder(eye, set, id);
   const double inset = seen ? outlineInset(seen->deviation, seen->reach, seen->grazing) : 0.0;
-  const PixelView& view = projection.view();
+  const scene::PixelView& view = projection.view();
   // Occluders whose position error exceeds the guard band around the buffer are skipped.
   if (seen && keepsShape(set[id], inset) &&
       projection.marginAt(inset, 1.0 / std::max(seen->nearest, view.near)) <
@@ -88,7 +88,7 @@ void PolygonBuilder::appendPolygon(const PolygonProjection& projection, const Ey
 
 void PolygonBuilder::build(const PolygonProjection& projection, const OccluderSet& set,
                            std::span<const OccluderId> chosen, BufferPolygons& polygons) {
-  const PixelView& view = projection.view();
+  const scene::PixelView& view = projection.view();
   polygons.clear();
   if (!view.sane()) {
     polygons.considered = static_cast<std::uint32_t>(chosen.size());

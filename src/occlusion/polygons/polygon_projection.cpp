@@ -21,7 +21,7 @@ struct ClipVolume {
   static constexpr int kNear = 0;
 
   // beyond: so many widths and heights of the buffer around it.
-  ClipVolume(const PixelView& view, double clip_depth, double beyond)
+  ClipVolume(const scene::PixelView& view, double clip_depth, double beyond)
       : left(view.middle_x + beyond * view.width),
         right(view.width - view.middle_x + beyond * view.width),
         bottom(view.middle_y + beyond * view.height),
@@ -59,9 +59,10 @@ struct ClipVolume {
   bool orthographic;
 };
 
-BufferEdge edgeBetween(const PixelPoint& a, const PixelPoint& b, EdgeKind kind, float margin) {
+BufferEdge edgeBetween(const geometry::PixelPoint& a, const geometry::PixelPoint& b, EdgeKind kind,
+                       float margin) {
   const bool rises = b.y > a.y;
-  const PixelPoint &low = rises ? a : b, &high = rises ? b : a;
+  const geometry::PixelPoint &low = rises ? a : b, &high = rises ? b : a;
   BufferEdge edge;
   edge.low = static_cast<float>(low.y);
   edge.high = static_cast<float>(high.y);
@@ -100,8 +101,8 @@ bool PolygonProjection::clip(double clip_depth, CameraOutline& outline) const {
   for (int plane = 0; plane < ClipVolume::kPlanes; ++plane) {
     const OutlineCorner cut{{}, plane == ClipVolume::kNear ? EdgeKind::kOpen : EdgeKind::kBorder};
     if ((outside_some >> plane & 1) != 0 &&
-        !clipConvex(outline.corners, outline.scratch, cut,
-                    [&](const Vec3d& p) { return volume.distance(plane, p); })) {
+        !geometry::clipConvex(outline.corners, outline.scratch, cut,
+                              [&](const Vec3d& p) { return volume.distance(plane, p); })) {
       return false;
     }
   }
@@ -160,7 +161,7 @@ BufferPolygon PolygonProjection::appendOutline(OccluderId occluder, std::span<co
     polygons.points.push_back(
         {view_.pixelX(corner.position, inverse), view_.pixelY(corner.position, inverse)});
   }
-  const std::span<const PixelPoint> points = polygons.corners(polygon);
+  const std::span<const geometry::PixelPoint> points = polygons.corners(polygon);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::size_t next = i + 1 < corners.size() ? i + 1 : 0;
     const double inverse_depth =
@@ -178,7 +179,7 @@ BufferPolygon PolygonProjection::appendOutline(OccluderId occluder, std::span<co
 }
 
 PolygonDepth PolygonProjection::depthOf(const Plane& support, double slack, const BufferPolygon& polygon,
-                                        std::span<const PixelPoint> corners) const {
+                                        std::span<const geometry::PixelPoint> corners) const {
   const bool conservative = form_ == PolygonForm::kConservative;
   const Vec3d n = view_.normalToCamera(support.normal);
   const double offset = support.offset + (conservative ? slack : 0.0);
@@ -189,7 +190,7 @@ PolygonDepth PolygonProjection::depthOf(const Plane& support, double slack, cons
   plane.at_origin = scale * (view_.orthographic ? offset : n.z) - plane.along_x * view_.middle_x -
                     plane.along_y * view_.middle_y;
   double min = std::numeric_limits<double>::infinity(), max = -min, sums = 0.0;
-  for (const PixelPoint& p : corners) {
+  for (const geometry::PixelPoint& p : corners) {
     const double x = plane.along_x * p.x, y = plane.along_y * p.y;
     min = std::min(min, plane.at_origin + x + y);
     max = std::max(max, plane.at_origin + x + y);

@@ -37,10 +37,10 @@ enum class PolygonForm : std::uint8_t {
 class PolygonProjection {
  public:
   PolygonProjection() = default;
-  PolygonProjection(const PixelView& view, PolygonForm form, std::uint32_t width, std::uint32_t height)
+  PolygonProjection(const scene::PixelView& view, PolygonForm form, std::uint32_t width, std::uint32_t height)
       : view_(view), form_(form), rounding_(bufferRounding(width, height)) {}
 
-  const PixelView& view() const { return view_; }
+  const scene::PixelView& view() const { return view_; }
   PolygonForm form() const { return form_; }
 
   // Clips an outline to the depths beyond clip_depth (metres) and to a rectangle around the buffer. False: no
@@ -59,10 +59,10 @@ class PolygonProjection {
   // Returns the reciprocal depth of a plane over a polygon. support: relative to the eye, unit normal towards
   // it. slack: metres by which the conservative form moves it away.
   PolygonDepth depthOf(const Plane& support, double slack, const BufferPolygon& polygon,
-                       std::span<const PixelPoint> corners) const;
+                       std::span<const geometry::PixelPoint> corners) const;
 
  private:
-  PixelView view_;
+  scene::PixelView view_;
   PolygonForm form_ = PolygonForm::kConservative;
   double rounding_ = 0.0;  // pixels
 };

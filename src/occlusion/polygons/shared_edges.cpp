@@ -66,7 +66,7 @@ std::uint64_t ActivePolygons::joinAcross(const OccluderSet& set, const Eye& eye,
   });
 }
 
-void appendOpenParts(const OccluderSet& set, const PixelView& view, const EyeOccluder& seen,
+void appendOpenParts(const OccluderSet& set, const scene::PixelView& view, const EyeOccluder& seen,
                      std::uint32_t edge_index, std::uint64_t open, std::vector<CameraSegment>& parts) {
   const OccluderEdge& edge = set.edges[edge_index];
   const Occluder& occluder = set[seen.id];

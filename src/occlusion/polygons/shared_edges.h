@@ -49,7 +49,7 @@ class ActivePolygons {
 };
 
 // Appends the open parts of an edge, in camera space. open: its mesh edges, as joinAcross() returns them.
-void appendOpenParts(const OccluderSet& set, const PixelView& view, const EyeOccluder& seen,
+void appendOpenParts(const OccluderSet& set, const scene::PixelView& view, const EyeOccluder& seen,
                      std::uint32_t edge_index, std::uint64_t open, std::vector<CameraSegment>& parts);
 
 }  // namespace sightline::occlusion

@@ -15,7 +15,7 @@ constexpr double kBorder = 2.0 / kGridStep;  // pixels by which rectangles are w
 
 // A bound of the coordinates of what lies in a box and is projected in batches: metres in an orthographic
 // view, divided by their depth in a perspective one.
-double reachOf(const Box& box, const PixelView& view) {
+double reachOf(const Box& box, const scene::PixelView& view) {
   // Boxes seen at a larger slope are too near for single precision, and pixel_boxes gives them no rectangle.
   constexpr double kLargestSlope = 0x1p15;
   const Vec3d far = EyeBox::of(box, view.eye).reach();
@@ -24,7 +24,7 @@ double reachOf(const Box& box, const PixelView& view) {
 
 }  // namespace
 
-void BoxExtents::begin(const PixelView& view, const Box& bounds, const DepthTarget& target) {
+void BoxExtents::begin(const scene::PixelView& view, const Box& bounds, const DepthTarget& target) {
   view_ = view;
   target_ = target;
   clip_depth_ = view.near * (1.0 + kNearMargin);
@@ -92,7 +92,7 @@ bool BoxExtents::of(const Box& box, const PixelBox& image, BoxExtent& extent) co
 }
 
 bool BoxExtents::of(const Box& box, BoxExtent& extent) const {
-  const PixelView& view = view_;
+  const scene::PixelView& view = view_;
   const Vec3d middle = view.toCamera(center(box) - view.eye), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
   const Vec3d size{dot(abs(view.right), half), dot(abs(view.up), half), dot(abs(view.forward), half)};
   const double reach = maxComponent(abs(middle)) + maxComponent(size);

@@ -25,8 +25,8 @@ struct BoxExtent {
 class BoxExtents {
  public:
   // bounds: all boxes lie in these.
-  void begin(const PixelView& view, const Box& bounds, const DepthTarget& target);
-  const PixelView& view() const { return view_; }
+  void begin(const scene::PixelView& view, const Box& bounds, const DepthTarget& target);
+  const scene::PixelView& view() const { return view_; }
   // What surfaces nearer than this depth do is left out, metres.
   double clipDepth() const { return clip_depth_; }
 
@@ -47,7 +47,7 @@ class BoxExtents {
   void setViewers();
   double tooNear() const;
 
-  PixelView view_;
+  scene::PixelView view_;
   DepthTarget target_;
   double clip_depth_ = 0.0;
   // The box around all places in camera space that are too near to one of several viewers; empty if there is

@@ -20,7 +20,7 @@ class PointProjection {
   using Doubles = hn::CappedTag<double, kMostLanes>;
   using DoublesV = hn::Vec<Doubles>;
 
-  HWY_INLINE PointProjection(const PixelView& view, double clip_depth)
+  HWY_INLINE PointProjection(const scene::PixelView& view, double clip_depth)
       : view_(view), clip_depth_(clip_depth) {}
 
   // Returns whether none of the points is nearer than the clip depth.
@@ -59,14 +59,14 @@ class PointProjection {
   }
 
   static constexpr Doubles kDoubles{};
-  const PixelView& view_;
+  const scene::PixelView& view_;
   double clip_depth_;
 };
 
 // ends: as in ChainEdges. Returns whether none of them is nearer than the clip depth; the lines of those that
 // are have no meaning.
 // camera: null, or receives the same lines in camera space.
-bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
+bool projectEnds(const scene::PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
                  GridLines& lines, CameraLines* camera) {
   const PointProjection projection(view, clip_depth);
   const std::size_t lanes = hn::Lanes(PointProjection::Doubles());
@@ -90,7 +90,7 @@ namespace sightline::occlusion {
 
 HWY_EXPORT(projectEnds);
 
-void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip_depth,
+void ChainEdges::begin(const SurfaceSet& set, const scene::PixelView& view, double clip_depth,
                        const EdgeBuffer& buffer) {
   set_ = &set;
   view_ = view;

@@ -18,7 +18,8 @@ namespace sightline::occlusion {
 class ChainEdges {
  public:
   // clip_depth: camera space; what is nearer is left out.
-  void begin(const SurfaceSet& set, const PixelView& view, double clip_depth, const EdgeBuffer& buffer);
+  void begin(const SurfaceSet& set, const scene::PixelView& view, double clip_depth,
+             const EdgeBuffer& buffer);
 
   // Adds a chain to the boundary of the group that the next endGroup() ends.
   void add(std::uint32_t chain, std::int32_t value);
@@ -52,7 +53,7 @@ class ChainEdges {
   Vec3d cutPoint(const Vec3f& a, const Vec3f& b) const;
 
   const SurfaceSet* set_ = nullptr;
-  PixelView view_;
+  scene::PixelView view_;
   double clip_depth_ = 0.0;
   EdgeBuffer buffer_;
   // These are of the group that was begun:

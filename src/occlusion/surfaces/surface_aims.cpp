@@ -5,7 +5,7 @@
 
 namespace sightline::occlusion {
 
-void SurfaceAims::begin(const PixelView& view, const DepthTarget& target) {
+void SurfaceAims::begin(const scene::PixelView& view, const DepthTarget& target) {
   extents_.begin(view, Box(), target);
   known_ = false;
 }
@@ -44,7 +44,7 @@ void SurfaceAims::setNeeds(const DepthTarget& target) {
   for (const Box& box : boxes_) {
     all.extend(box);
   }
-  extents_.begin(PixelView(extents_.view()), all, target);
+  extents_.begin(scene::PixelView(extents_.view()), all, target);
   extents_.project(boxes_, images_);
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     BoxExtent extent;

@@ -24,7 +24,7 @@ constexpr double leastGain(bool aims) {
 class SurfaceAims {
  public:
   // A view begins, or nothing is aimed at any more. view: of scene space.
-  void begin(const PixelView& view, const DepthTarget& target);
+  void begin(const scene::PixelView& view, const DepthTarget& target);
   // Has the map aim at these boxes of scene space, or if there are none, at everything. It stays the same map
   // until begin().
   void aim(std::span<const Box> boxes, WindingMap& map);

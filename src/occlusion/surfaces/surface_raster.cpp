@@ -55,9 +55,9 @@ void SurfaceRaster::reserve(const SurfaceSet& set, SurfaceMemory& memory) {
   memory.reserve(set);
 }
 
-void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-                         const SurfaceDrawing& drawing, SurfaceMemory& memory, WindingMap& map,
-                         const ParallelFor& parallel_for) {
+void SurfaceRaster::draw(const SurfaceSet& set, const scene::PixelView& view,
+                         std::span<const ObjectId> candidates, const SurfaceDrawing& drawing,
+                         SurfaceMemory& memory, WindingMap& map, const ParallelFor& parallel_for) {
   drawing_ = drawing;
   parallel_for_ = &parallel_for;
   map_ = &map;

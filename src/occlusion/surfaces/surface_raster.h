@@ -23,7 +23,7 @@ class SurfaceRaster {
   // Makes room for a set, so that the first draw() of it need not.
   void reserve(const SurfaceSet& set, SurfaceMemory& memory);
   // map: of the view's buffer, aimed at the drawing's targets. view: in the space of the set.
-  void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
+  void draw(const SurfaceSet& set, const scene::PixelView& view, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing, SurfaceMemory& memory, WindingMap& map,
             const ParallelFor& parallel_for);
   const SurfaceStats& stats() const { return stats_; }

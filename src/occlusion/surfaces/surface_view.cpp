@@ -15,7 +15,7 @@ constexpr std::int32_t kSmall = 64;  // pixels of the rectangle of a cluster who
 
 }  // namespace
 
-void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, double min_pixels,
+void SurfaceView::begin(const SurfaceSet& set, const scene::PixelView& view, double min_pixels,
                         const DepthTarget& target) {
   set_ = &set;
   extents_.begin(view, set.bounds, target);
@@ -311,7 +311,7 @@ DepthBound SurfaceView::boundOf(const Plane& plane, double farthest) const {
 }
 
 DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size, double farthest) const {
-  const PixelView& view = extents_.view();
+  const scene::PixelView& view = extents_.view();
   const double floor = view.reciprocalDepth(farthest);
   DepthBound bound;
   bound.floor = static_cast<float>(floor - 1e-6 * std::abs(floor));

@@ -59,10 +59,11 @@ class SurfaceView {
  public:
   // What surfaces nearer than this depth do is left out, metres.
   double clipDepth() const { return extents_.clipDepth(); }
-  const PixelView& view() const { return extents_.view(); }
+  const scene::PixelView& view() const { return extents_.view(); }
 
   // min_pixels: parts with a smaller rectangle in the buffer are left out.
-  void begin(const SurfaceSet& set, const PixelView& view, double min_pixels, const DepthTarget& target);
+  void begin(const SurfaceSet& set, const scene::PixelView& view, double min_pixels,
+             const DepthTarget& target);
   // Lists the parts of some objects, the nearest ones first.
   void listParts(std::span<const ObjectId> objects);
   // Lists these parts, in this order.

@@ -125,7 +125,7 @@ class AxisReach {
 // What lines are swept over, by line in each lane.
 class Sweep {
  public:
-  HWY_INLINE Sweep(const PixelView& view, double clip_depth)
+  HWY_INLINE Sweep(const scene::PixelView& view, double clip_depth)
       : view_(view),
         least_depth_(set(kLeastDepth * clip_depth)),
         sides_{side((view.width + kBorder - view.middle_x) / view.scale_x, 1.0),
@@ -189,7 +189,7 @@ class Sweep {
     right_of_line_ = hn::Max(right_of_line_, hn::Add(spare, right_of_line));
   }
 
-  const PixelView& view_;
+  const scene::PixelView& view_;
   DoublesV least_depth_;
   BeyondSide sides_[4];
   AxisReach x_, y_;
@@ -197,8 +197,8 @@ class Sweep {
   DoublesV left_of_line_, right_of_line_;
 };
 
-void sweepLines(const PixelView& view, double clip_depth, const CameraLines& lines, const GridLines& grid,
-                std::size_t count, GridSweeps& sweeps) {
+void sweepLines(const scene::PixelView& view, double clip_depth, const CameraLines& lines,
+                const GridLines& grid, std::size_t count, GridSweeps& sweeps) {
   const auto pointsFrom = [](const CameraPoints& points, std::size_t at) HWY_ATTR {
     return CameraV{load(points.x, at), load(points.y, at), load(points.z, at)};
   };
@@ -223,8 +223,8 @@ namespace sightline::occlusion {
 
 HWY_EXPORT(sweepLines);
 
-void findSweeps(const PixelView& view, double clip_depth, const CameraLines& lines, const GridLines& grid,
-                std::size_t count, GridSweeps& sweeps) {
+void findSweeps(const scene::PixelView& view, double clip_depth, const CameraLines& lines,
+                const GridLines& grid, std::size_t count, GridSweeps& sweeps) {
   sweeps.reserve(count);
   HWY_DYNAMIC_DISPATCH(sweepLines)(view, clip_depth, lines, grid, count, sweeps);
 }

@@ -42,7 +42,7 @@ struct CameraLines {
 // Sets the sweeps of the first `count` lines, whose ends are not nearer than clip_depth. grid: the lines'
 // images. Sweeps that do not come into the buffer are 0; those of a line that some viewer may pass are
 // infinite, to one side at least.
-void findSweeps(const PixelView& view, double clip_depth, const CameraLines& lines, const GridLines& grid,
-                std::size_t count, GridSweeps& sweeps);
+void findSweeps(const scene::PixelView& view, double clip_depth, const CameraLines& lines,
+                const GridLines& grid, std::size_t count, GridSweeps& sweeps);
 
 }  // namespace sightline::occlusion

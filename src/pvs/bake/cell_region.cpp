@@ -73,8 +73,10 @@ double areaOf(std::span<const Corner> polygon) {
 void clipTo(const CellBox& cell, std::vector<Corner>& polygon) {
   std::vector<Corner> scratch;
   for (int axis = 0; axis < 3; ++axis) {
-    clipConvex(polygon, scratch, Corner{}, [&](const Vec3d& p) { return p[axis] - cell.min[axis]; }) &&
-        clipConvex(polygon, scratch, Corner{}, [&](const Vec3d& p) { return cell.max[axis] - p[axis]; });
+    geometry::clipConvex(polygon, scratch, Corner{},
+                         [&](const Vec3d& p) { return p[axis] - cell.min[axis]; }) &&
+        geometry::clipConvex(polygon, scratch, Corner{},
+                             [&](const Vec3d& p) { return cell.max[axis] - p[axis]; });
   }
 }
 

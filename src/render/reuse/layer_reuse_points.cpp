@@ -146,7 +146,7 @@ void LayerShapes::clipTriangles(const Shape& shape, const Mat4& scene_from_store
       cut_in_depth |= plane >= kSidePlanes &&
                       std::any_of(polygon.begin(), polygon.end(),
                                   [&](const Corner& c) { return !(distance(c.position) >= 0.0); });
-      clipConvex(polygon, scratch, {}, distance);
+      geometry::clipConvex(polygon, scratch, {}, distance);
     }
     if (!visit(polygon, cut_in_depth)) {
       return;
