@@ -57,6 +57,29 @@ TEST(Tool, NumbersOutOfRangeAreRefused) {
   }
 }
 
+TEST(Tool, FramesBeyondThePathAreToldHowManyItHas) {
+  for (const std::string command : {"cull", "verify"}) {
+    for (const std::string bad : {"400", "400:500", "4294967295", "1000:2000:10"}) {
+      expectRefused({command, kCity, "--frames", bad},
+                    "'" + bad + "' begins beyond the path, which has 400 frames, 0 to 399");
+    }
+  }
+  expectRefused({"cull", kCity, "--frames", "3:1"}, "is not A:B");
+}
+
+TEST(Tool, VerifySaysHowToGetCertainty) {
+  std::vector<std::string> few_rays{"verify",   kCity, "--frames", "0:20:10",       "--width",     "64",
+                                    "--height", "36",  "--method", "depth-pyramid", "--gap-steps", "0"};
+  const Outcome by_rays = runTool(few_rays);
+  EXPECT_NE(by_rays.out.find("--proof decides about them"), std::string::npos) << by_rays.out;
+  const Outcome short_proof = runTool(joined(few_rays, {"--proof", "--proof-steps", "1"}));
+  EXPECT_NE(short_proof.out.find("a larger --proof-steps"), std::string::npos) << short_proof.out;
+  const Outcome proof = runTool(joined(few_rays, {"--proof"}));
+  EXPECT_EQ(proof.out.find("--proof"), std::string::npos) << "all is decided: " << proof.out;
+  const std::string help = runTool({"verify", "--help"}).out;
+  EXPECT_NE(help.substr(0, help.find('\n')).find("--proof"), std::string::npos) << help;
+}
+
 TEST(Tool, FilesThatAreNoScenesAreRefused) {
   const TemporaryFolder folder;
   expectRefused({"info", folder.file("missing.glb")}, "missing.glb");

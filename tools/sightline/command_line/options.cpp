@@ -154,7 +154,7 @@ Result<std::vector<std::uint32_t>> chooseFrames(const std::string& text, std::si
   const std::string form = fmt::format(
       "--frames: '{}' is not A:B, A:B:STEP or one number with A < B and STEP > 0; the path has {} frames",
       text, count);
-  std::uint32_t numbers[3] = {0, static_cast<std::uint32_t>(count), 1};
+  std::uint64_t numbers[3] = {0, count, 1};
   if (!text.empty()) {
     const std::vector<std::string> parts = splitAt(text, ':');
     if (parts.size() > 3) {
@@ -168,12 +168,18 @@ Result<std::vector<std::uint32_t>> chooseFrames(const std::string& text, std::si
       numbers[i] = *value;
     }
     if (parts.size() == 1) {
-      numbers[1] = numbers[0] < count ? numbers[0] + 1 : numbers[0];
+      numbers[1] = numbers[0] + 1;
     }
   }
   const auto [begin, end, step] = numbers;
-  if (begin >= end || step == 0 || begin >= count) {
+  if (begin >= end || step == 0) {
     return Error{form};
+  }
+  if (begin >= count) {
+    return Error{count == 1
+                     ? fmt::format("--frames: '{}' begins beyond the path, whose only frame is 0", text)
+                     : fmt::format("--frames: '{}' begins beyond the path, which has {} frames, 0 to {}",
+                                   text, count, count - 1)};
   }
   std::vector<std::uint32_t> frames;
   for (std::uint64_t frame = begin; frame < std::min<std::uint64_t>(end, count); frame += step) {

@@ -200,7 +200,9 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
   }
 }
 
-void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const SceneAndWalk& input) {
+// more_certain: what decides about more objects.
+void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const SceneAndWalk& input,
+           const char* more_certain) {
   printFalseCulls(runs, input.scene);
   const std::string with = crackText(input.closing.note()) + clustersText(input.clustering);
   const auto a_frame = [&](std::size_t count) {
@@ -221,6 +223,11 @@ void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const S
                           std::to_string(total.undecided), std::to_string(run.false_culls.size())});
   }
   fmt::print("{}", toText(table));
+  const bool undecided =
+      std::any_of(runs.begin(), runs.end(), [](const auto& run) { return run.total().undecided > 0; });
+  if (undecided) {
+    fmt::print("undecided: culled, but neither seen nor proved hidden; {}\n", more_certain);
+  }
 }
 
 Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Setting>& settings,
@@ -249,7 +256,8 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
   if (options.common.textOnStdout()) {
     const std::string choice = choiceText(settings);
     fmt::print("{}{}", choice, choice.empty() ? "" : "\n");
-    print(runs, verifier, input);
+    print(runs, verifier, input,
+          options.proof ? "a larger --proof-steps decides about more of them" : "--proof decides about them");
   }
   data.noteUnknownSets();
   const bool clean =
@@ -280,8 +288,10 @@ Result<ExitCode> runVerify(const VerifyOptions& options, const CLI::App& command
 }  // namespace
 
 void addVerify(CLI::App& app, Command& chosen) {
-  CLI::App* command =
-      app.add_subcommand("verify", "compares culling with exact visibility; exit code 1 on a false cull");
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "compares culling with exact visibility, by rays or, with --proof, by exact proofs; exit "
+      "code 1 on a false cull");
   const auto options = std::make_shared<VerifyOptions>();
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
@@ -316,16 +326,19 @@ void addVerify(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   addRegionOptions(*command, options->regions);
   command->footer(
-      "Exact arithmetic confirms each ray, and proves objects hidden by subtracting the images of nearer\n"
-      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden; they do not\n"
-      "change the exit code.\n"
+      "For certainty, give --proof: each culled object is then seen, or proved hidden, in exact arithmetic.\n"
+      "Without it, rays are cast and each is confirmed by exact arithmetic, and proofs end after "
+      "--gap-steps;\n"
+      "'undecided' culled objects are neither seen nor proved hidden; they do not change the exit code.\n"
+      "A proof subtracts the images of nearer triangles from that of the object.\n"
       "overestimate is kept / visible objects over all frames.\n"
       "With --baked and --proof, and no path, method or rays: takes pairs of a cell and an object that\n"
       "is not in its set, and searches a place in the cell from where the object is visible.\n"
       "Examples:\n"
-      "  sightline verify city.glb --path walk.json\n"
       "  sightline verify city.glb --path walk.json --frames 0:400:20 --proof\n"
-      "  sightline verify demo:building --variant FSE,FSC,FME,FMC --hierarchy kd,bvh --coherence on,off\n"
+      "  sightline verify city.glb --path walk.json\n"
+      "  sightline verify demo:building --method occlusion-tree --variant FSE,FSC,FME,FMC --hierarchy kd,bvh "
+      "--coherence on,off\n"
       "  sightline verify demo:city --method supporting-planes --joint on,off --occluders "
       "area-angle,database\n"
       "  sightline verify demo:boxes --method depth-pyramid --resolution 64x36,320x180 --focus 0,8 --frames "
