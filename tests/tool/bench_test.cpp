@@ -180,7 +180,8 @@ TEST(Bench, BoxesAreThoseThatAnyTestOfBoxesMustKeep) {
 TEST(Bench, KeepsWhatCullKeeps) {
   const json result = toolJson(benchOf(kBenchCity, {"--no-cache", "--method", "occlusion-tree",
                                                     "--occluder-count", "64", "--variant", "FSC"}));
-  const json cull = toolJson({"cull", kBenchCity, "--frames", "0:400:100", "--variant", "FSC"});
+  const json cull = toolJson(
+      {"cull", kBenchCity, "--frames", "0:400:100", "--method", "occlusion-tree", "--variant", "FSC"});
   std::size_t kept = 0;
   for (const json& frame : cull["frames"]) {
     kept += frame["visible"].size();

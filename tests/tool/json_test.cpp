@@ -146,9 +146,9 @@ TEST(Tool, VerifyIsTheSameWithAnyThreads) {
 
 TEST(Tool, NothingVisibleIsEverCulled) {
   for (const std::string scene : {"demo:city?copies=1", "demo:building?floors=2"}) {
-    const json verify =
-        jsonOf({"verify", scene, "--variant", "FSE,FSC,FME,FMC", "--hierarchy", "kd,bvh", "--coherence",
-                "on,off", "--frames", "0:400:100", "--width", "160", "--height", "90"});
+    const json verify = jsonOf({"verify", scene, "--method", "occlusion-tree", "--variant", "FSE,FSC,FME,FMC",
+                                "--hierarchy", "kd,bvh", "--coherence", "on,off", "--frames", "0:400:100",
+                                "--width", "160", "--height", "90"});
     ASSERT_EQ(verify["runs"].size(), 16u);
     for (const json& run : verify["runs"]) {
       EXPECT_EQ(run["false_culls"], 0) << scene << " " << run["options"] << " " << run["witnesses"];

@@ -99,7 +99,8 @@ TEST(MethodChoice, AnOptionThatTheChosenMethodLacksIsNamed) {
   const Outcome outcome =
       runTool({"cull", "demo:glass", "--method", "auto", "--variant", "FSE", "--frames", "0"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "sightline: --variant changes nothing here: no method in use has it\n");
+  EXPECT_EQ(outcome.err,
+            "sightline: --variant changes nothing here: it belongs to --method occlusion-tree\n");
   EXPECT_EQ(outcome.out.rfind("auto is frustum (", 0), 0u) << outcome.out;
 }
 

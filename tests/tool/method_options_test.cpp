@@ -29,7 +29,7 @@ std::vector<std::string> keysOf(const json& object) {
 TEST(MethodOptions, AMethodShowsItsOwnOptionsOnly) {
   using Keys = std::vector<std::string>;  // as parsed: ascending
   EXPECT_EQ(keysOf(culledCity({"--method", "frustum"})["options"]), (Keys{"hierarchy", "object_boxes"}));
-  EXPECT_EQ(keysOf(culledCity({})["options"]),
+  EXPECT_EQ(keysOf(culledCity({"--method", "occlusion-tree"})["options"]),
             (Keys{"area_angle", "coherence", "detail_objects", "draw_object_us", "draw_triangle_us",
                   "hierarchy", "lambda_steps", "min_node_cost", "object_boxes", "occluder_count", "occluders",
                   "test_objects", "variant"}));
@@ -120,7 +120,10 @@ TEST(MethodOptions, TheTextTellsWhatIsNotAsUsual) {
     const std::string out = runTool(options).out;
     return out.substr(0, out.find("), 1 frames"));
   };
-  EXPECT_EQ(text({}), "occlusion-tree (FME, 64 occluders, bvh, coherence on");
+  EXPECT_EQ(text({}), "depth-pyramid (320x180, surfaces, bvh, coherence on");
+  EXPECT_EQ(text({"--occluders", "database"}),
+            "depth-pyramid (320x180, 64 occluders, bvh, coherence on, occluders database");
+  EXPECT_EQ(text({"--method", "occlusion-tree"}), "occlusion-tree (FME, 64 occluders, bvh, coherence on");
   EXPECT_EQ(text({"--method", "frustum", "--joint", "off"}), "frustum (bvh");
   EXPECT_EQ(text({"--method", "supporting-planes"}), "supporting-planes (64 occluders, bvh");
   EXPECT_EQ(text({"--method", "supporting-planes", "--joint", "off", "--occluders", "database"}),
@@ -390,14 +393,19 @@ TEST(MethodOptions, BadValuesAreRefused) {
   }
   expectRefused({"cull", kCity, "--method", "supporting-planes", "--joint", "on,off"}, "one value");
   EXPECT_EQ(runTool({"cull", kCity, "--frames", "0", "--joint", "on,off"}).code, 0)
-      << "the occlusion tree has no such option";
+      << "the depth pyramid has no such option";
 }
 
 TEST(MethodOptions, AGivenOptionThatNoMethodHasIsTold) {
   const Outcome outcome =
       runTool({"cull", kCity, "--frames", "0", "--method", "supporting-planes", "--variant", "FSE"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.err.find("--variant changes nothing here"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err,
+            "sightline: --variant changes nothing here: it belongs to --method occlusion-tree\n");
+  const Outcome of_other_planes = runTool(
+      {"cull", kCity, "--frames", "0", "--method", "supporting-planes", "--tangents", "all-vertices"});
+  EXPECT_EQ(of_other_planes.code, 0);
+  EXPECT_EQ(of_other_planes.err, "sightline: --tangents changes nothing here: no method in use has it\n");
 }
 
 }  // namespace

@@ -12,8 +12,9 @@ TEST(Tool, WalkWritesAReportThatStandsAlone) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
   const TemporaryFolder folder;
   const std::string report = folder.file("new/report");
-  const Outcome outcome = runTool({"walk", "demo:city?copies=1", "-o", report, "--frames", "0:400:50",
-                                   "--width", "160", "--height", "90", "--variant", "FSE,FME"});
+  const Outcome outcome =
+      runTool({"walk", "demo:city?copies=1", "-o", report, "--frames", "0:400:50", "--width", "160",
+               "--height", "90", "--method", "occlusion-tree", "--variant", "FSE,FME"});
   ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
   EXPECT_EQ(outcome.err, "");
   const json walk = parse(contents(report + "/walk.json"));

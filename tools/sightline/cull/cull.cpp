@@ -175,7 +175,7 @@ void addCull(CLI::App& app, Command& chosen) {
   command->footer(
       "Examples:\n"
       "  sightline cull city.glb --path walk.json --json visible.json\n"
-      "  sightline cull demo:city --path worst --variant FSE --occluder-count 32 --json -\n"
+      "  sightline cull demo:city --path worst --method occlusion-tree --occluder-count 32 --json -\n"
       "  sightline cull demo:building --method supporting-planes --hierarchy kd --occluders database\n"
       "  sightline cull demo:building --method frustum --frames 0:400:10\n"
       "  sightline cull city.glb --method auto --json visible.json\n"

@@ -193,6 +193,11 @@ bool usesDatabase(const Setting& setting) {
   return setting.usesDatabase() || setting.testsDetailObjects();
 }
 
+// Whether the method names the option in its row: it has it for some values of its other options.
+bool hasOption(const Method& method, std::string_view name) {
+  return std::find(method.options.begin(), method.options.end(), name) != method.options.end();
+}
+
 struct Option {
   std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
   bool of_methods;   // only methods that name it in their rows have it
@@ -205,8 +210,7 @@ struct Option {
   // Whether the option has a meaning for a setting in which the options above it are set. If not, it is
   // neither set nor shown, and its list of values does not multiply the setting.
   bool belongs(const Setting& setting) const {
-    const std::vector<std::string_view>& own = setting.method->options;
-    return (!of_methods || std::find(own.begin(), own.end(), name) != own.end()) && when(setting);
+    return (!of_methods || hasOption(*setting.method, name)) && when(setting);
   }
 };
 
@@ -476,6 +480,23 @@ MethodOptions withChoice(MethodOptions options, const MethodChoice& choice) {
   return options;
 }
 
+// Why a given option has no meaning for any of the settings.
+std::string uselessBecause(const Option& option, const std::vector<Setting>& settings) {
+  const bool is_in_use = std::any_of(settings.begin(), settings.end(), [&](const Setting& setting) {
+    return hasOption(*setting.method, option.name);
+  });
+  if (!option.of_methods || is_in_use) {
+    return "no method in use has it";
+  }
+  std::string methods;
+  for (const Method& method : allMethods()) {
+    if (hasOption(method, option.name)) {
+      methods += (methods.empty() ? "" : ",") + std::string(method.name);
+    }
+  }
+  return "it belongs to --method " + methods;
+}
+
 // Names on stderr the given options that no method has.
 void noteUseless(const MethodOptions& options, const std::vector<Setting>& settings) {
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
@@ -483,7 +504,8 @@ void noteUseless(const MethodOptions& options, const std::vector<Setting>& setti
     const bool given = options.texts[i] != options.defaults[i];
     if (given && std::none_of(settings.begin(), settings.end(),
                               [&](const Setting& setting) { return option.belongs(setting); })) {
-      fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
+      fmt::print(stderr, "sightline: --{} changes nothing here: {}\n", option.name,
+                 uselessBecause(option, settings));
     }
   }
 }
@@ -491,8 +513,7 @@ void noteUseless(const MethodOptions& options, const std::vector<Setting>& setti
 }  // namespace
 
 SurfaceUse Setting::surfaces() const {
-  const std::vector<std::string_view>& own = method->options;
-  if (raster.coverage != nullptr || std::find(own.begin(), own.end(), "surfaces") == own.end()) {
+  if (raster.coverage != nullptr || !hasOption(*method, "surfaces")) {
     return SurfaceUse::kNone;
   }
   switch (surface_option) {
@@ -529,8 +550,7 @@ bool Setting::usesViewpoints() const {
 }
 
 bool Setting::usesDepthBuffer() const {
-  const std::vector<std::string_view>& own = method->options;
-  return std::find(own.begin(), own.end(), "resolution") != own.end();
+  return hasOption(*method, "resolution");
 }
 
 bool Setting::approximate() const {

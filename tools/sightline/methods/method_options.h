@@ -36,7 +36,7 @@ struct MethodChoice;
 // One method with one value of each option: the settings of every method, of which its own counts.
 struct Setting {
   HierarchyKind hierarchy = HierarchySettings{}.kind;
-  const Method* method = &methodNamed("occlusion-tree");
+  const Method* method = &methodNamed("depth-pyramid");
   CullerSettings culler{};
   OccluderChoice occluders = OccluderChoice::kAreaAngle;
   OccluderDatabaseSettings database{};
