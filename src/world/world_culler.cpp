@@ -58,6 +58,7 @@ void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given)
   for (const InstanceId id : data.unbounded) {
     if ((data.instances[id.value].groups & settings.groups) != 0) {
       kept.insert(id.value);
+      counts.unplaced += 1;
     }
   }
   visible.clear();

@@ -303,11 +303,13 @@ TEST(World, WhatCannotBePlacedIsAlwaysKept) {
   WorldCuller culler;
   culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
   EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()), odd);
+  EXPECT_EQ(culler.stats().unplaced, odd.size());
   for (const InstanceId id : odd) {
     world.setShown(id, false);
   }
   culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
   EXPECT_TRUE(culler.visible().empty());
+  EXPECT_EQ(culler.stats().unplaced, 0u);
   EXPECT_EQ(culler.disappeared().size(), odd.size());
   View broken = viewFrom({0, 0, 0}, {0, 0, -1});
   broken.aspect = -1.0;

@@ -37,6 +37,9 @@ struct WorldCullStats {
   // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything that
   // is shown was kept.
   const char* view_fault = nullptr;
+  // Instances that were kept because nothing tells where they are: their mesh is not there or has no extent
+  // that is finite, or their matrix is not affine, not finite or leads beyond single precision.
+  std::uint32_t unplaced = 0;
   std::uint32_t occluders = 0;     // instances whose own surfaces were drawn, and joins
   std::uint32_t edges = 0;         // of the boundaries that were drawn
   std::uint32_t nodes_tested = 0;  // nodes of the hierarchy whose children were tested
