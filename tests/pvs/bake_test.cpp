@@ -161,6 +161,18 @@ TEST(Bake, DividesCellsThatAreTooLargeForTheOccludersInThem) {
   EXPECT_GT(keptAt(result, {-500.3, 1.7, 171.2}), 0.9);
 }
 
+// A cell takes much longer where surfaces hide as well.
+TEST(Bake, ChoosesFewerCellsWhereSurfacesHide) {
+  const Scene scene = streetScene(300.0f);
+  const OccluderSet occluders = allOccluders(scene);
+  const Result<Bake> convex = Bake::plan(scene.view(), occluders, {});
+  const Result<Bake> fused = Bake::plan(scene.view(), occluders, {.occlusion = BakeOcclusion::kFused});
+  ASSERT_TRUE(convex && fused);
+  EXPECT_LE(fused->maxCells(), 2048u);
+  EXPECT_GT(fused->maxCells(), 256u) << "one level more would be too many";
+  EXPECT_GT(convex->maxCells().value(), 4 * fused->maxCells().value());
+}
+
 TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
   const Scene scene = streetScene(2000.0f);
   const OccluderSet occluders = allOccluders(scene);

@@ -281,6 +281,23 @@ TEST(Bake, WarnsWhenItsSetsHideNothingAndSaysWhy) {
              {"--triangle-budget", "1", "--depth", "3", "--occlusion", "fused"});
 }
 
+// A quarter of the crates are behind a wall, so the sets are of some use.
+TEST(Bake, TellsOfSurfacesWhereSingleOccludersHideLittle) {
+  const TemporaryFolder folder;
+  std::string obj;
+  int corners = 0;
+  addBox(obj, corners, 0.0, 0.0, 8.0, 8.0, 1.0);
+  for (int i = 0; i < 40; ++i) {
+    addBox(obj, corners, i < 10 ? 3.0 : -40.0 - i, i < 10 ? 2.0 + 0.1 * i : 4.0, 0.05, 0.05, 0.05);
+  }
+  const std::string scene = folder.write("crates.obj", obj);
+  const std::vector<std::string> fixed{"--region", "0,0,-4,8,8,-2", "--triangle-budget", "1", "--depth", "2"};
+  const std::string warning = warningOf(folder, scene, fixed);
+  EXPECT_EQ(warning.find("the sets keep "), 0u) << warning;
+  EXPECT_NE(warning.find("--occlusion fused"), std::string::npos);
+  EXPECT_EQ(warningOf(folder, scene, joined(fixed, {"--force", "--occlusion", "fused"})), "");
+}
+
 TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("walls.obj", kWalls), file = folder.file("F.sight");

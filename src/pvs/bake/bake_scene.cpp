@@ -93,10 +93,16 @@ Box frameOf(const CellBox& cell, std::span<const Box> boxes) {
 }
 
 constexpr std::size_t kDefaultSampleBytes = 256u << 20;
+
 // Limits of a chosen depth: its minimum, and the maximum number of cells beyond that.
-constexpr std::uint32_t kMinChosenDepth = 6;
-constexpr std::uint64_t kMaxChosenCells = 1u << 15;
-constexpr std::uint32_t kLargeInLevels = 3;  // at most kMinChosenDepth
+struct DepthLimits {
+  std::uint32_t min_depth = 0;
+  std::uint64_t max_cells = 0;
+};
+constexpr DepthLimits kConvexLimits{6, 1u << 15};
+// A cell takes some fifty times as long where surfaces hide as well.
+constexpr DepthLimits kFusedLimits{3, 1u << 11};
+constexpr std::uint32_t kLargeInLevels = 3;  // at most the minimum depths
 // Minimum edge of a cell in near distances. In smaller cells, the closest occluders would no longer count.
 constexpr double kMinEdgeInNears = 4.0;
 // Detects the region's floor, ceiling and outer walls, which hide nothing inside the region. In fractions of
@@ -269,19 +275,21 @@ void BakeScene::chooseDepth() {
   const auto small = [&](std::uint32_t level) {
     return boxOf({level, {}}).extent().x < kMinEdgeInNears * settings.near_distance;
   };
-  base_depth_ = kMinChosenDepth;
+  const auto [min_depth, max_cells] =
+      settings.occlusion == BakeOcclusion::kFused ? kFusedLimits : kConvexLimits;
+  base_depth_ = min_depth;
   while (base_depth_ < kMaxOctreeDepth && !small(base_depth_ + 1) &&
-         countCells(root, {}, base_depth_ + 1, kMaxChosenCells + 1,
-                    [&](const CellBox& box) { return holdsViewers(box); }) <= kMaxChosenCells) {
+         countCells(root, {}, base_depth_ + 1, max_cells + 1,
+                    [&](const CellBox& box) { return holdsViewers(box); }) <= max_cells) {
     ++base_depth_;
   }
   settings.max_depth = base_depth_;
   for (std::uint32_t level = base_depth_ + 1; level <= kMaxOctreeDepth && !small(level); ++level) {
     BoxTree near = reachOfOccluders(level);
-    const std::uint64_t count = countCells(root, {}, level, kMaxChosenCells + 1, [&](const CellBox& box) {
+    const std::uint64_t count = countCells(root, {}, level, max_cells + 1, [&](const CellBox& box) {
       return holdsViewers(box) && anyIntersecting(near, box);
     });
-    if (count > kMaxChosenCells) {
+    if (count > max_cells) {
       break;
     }
     if (count > 0) {

@@ -36,7 +36,8 @@ void addSizeOptions(CLI::App& command, BakeOptions& options) {
   command
       .add_option(
           "--depth", settings.max_depth,
-          "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
+          "of the octree: a cell is halved so often at most (default: chosen by the scene; at least 6, or 3 "
+          "and fewer cells where surfaces hide as well)")
       ->check(CLI::Range(0u, kMaxOctreeDepth));
 }
 

@@ -11,7 +11,13 @@ namespace {
 
 // Sets that keep this share of the scene's triangles, in the mean over space and over cells, are of no use.
 constexpr double kKeepsAll = 0.9;
+// Where single convex occluders leave this share, surfaces are worth their time.
+constexpr double kKeepsMost = 0.7;
 constexpr double kMaxOfSpace = 0.5;
+
+constexpr const char* kAloneHideLittle =
+    "single convex occluders hide little here: the scene is open, or its walls are of many small pieces, "
+    "which --occlusion fused lets hide together";
 
 double shareOf(const SightFacts& facts, StopReason reason) {
   return facts.reason_volumes[static_cast<std::size_t>(reason)];
@@ -69,8 +75,7 @@ std::string reasonFor(const SightFile& file, const SightFacts& facts) {
         edge, record.max_depth);
   }
   if (!occluders || occluders->alone) {
-    return "single convex occluders hide little here: the scene is open, or its walls are of many small "
-           "pieces, which --occlusion fused lets hide together";
+    return kAloneHideLittle;
   }
   return "surfaces hide little here: the scene is open, or whole rooms lie in one cell";
 }
@@ -81,11 +86,15 @@ std::string bakeWarning(const SightFile& file, const SightFacts& facts) {
   const auto triangles = static_cast<double>(file.scene().triangles);
   const double in_space = facts.mean_triangles_by_volume / triangles;
   const double in_cells = facts.sizes.triangles.mean / triangles;
-  if (!(in_space > kKeepsAll && in_cells > kKeepsAll)) {
-    return {};
+  if (in_space > kKeepsAll && in_cells > kKeepsAll) {
+    return fmt::format("the sets are of little use: they keep {:.0f} % of the triangles; {}",
+                       100.0 * in_space, reasonFor(file, facts));
   }
-  return fmt::format("the sets are of little use: they keep {:.0f} % of the triangles; {}", 100.0 * in_space,
-                     reasonFor(file, facts));
+  const std::optional<OccluderFacts> occluders = occludersOf(file.record());
+  if (in_space > kKeepsMost && in_cells > kKeepsMost && occluders && occluders->alone) {
+    return fmt::format("the sets keep {:.0f} % of the triangles; {}", 100.0 * in_space, kAloneHideLittle);
+  }
+  return {};
 }
 
 }  // namespace sightline::tool

@@ -42,7 +42,8 @@ struct BakeSettings {
   // that were baked, those are joined that gain viewers least. The parts are the same with any.
   std::uint64_t byte_budget = 0;
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
-  // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
+  // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders. With kFused,
+  // fewer cells are chosen.
   static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
   std::uint32_t max_depth = kChooseDepth;
   // Maximum distance in metres from a viewer's eye to what its near plane clips (nearDistance). Occluders
