@@ -28,7 +28,7 @@ namespace {
 // second for each 100,000 bytes.
 constexpr std::uint64_t kReaderBytes = 1024 * 1024 * 1024, kReaderBytesEach = 100;
 constexpr std::uint64_t kReaderSeconds = 60, kReaderBytesInSecond = 100'000;
-constexpr unsigned char kScene = 1, kError = 2;  // what an answer of that process begins with
+constexpr unsigned char kSceneFollows = 1, kErrorFollows = 2;  // what an answer of that process begins with
 
 constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
                             aiProcess_JoinIdenticalVertices;
@@ -218,7 +218,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
   // The first byte tells a scene from an error's text.
   const Result<std::vector<std::byte>> answer = runInChild(own, [&] {
     const Result<Scene> scene = importAssimp(file, limits);
-    std::vector<std::byte> bytes{std::byte{scene ? kScene : kError}};
+    std::vector<std::byte> bytes{std::byte{scene ? kSceneFollows : kErrorFollows}};
     const auto append = [&bytes](std::span<const std::byte> more) {
       bytes.insert(bytes.end(), more.begin(), more.end());
     };
@@ -231,7 +231,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
                    answer ? "its reader gave no answer" : answer.error().message);
   }
   const std::span<const std::byte> rest = std::span(*answer).subspan(1);
-  if (answer->front() == std::byte{kError}) {
+  if (answer->front() == std::byte{kErrorFollows}) {
     return failure("{}", std::string_view(reinterpret_cast<const char*>(rest.data()), rest.size()));
   }
   std::optional<Scene> scene = sceneFromBytes(rest);

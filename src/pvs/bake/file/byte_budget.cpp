@@ -27,7 +27,7 @@ double viewerVolume(const BakedCell& leaf) {
 
 // About how many bytes of the file are the leaf's. Equal sets are stored once, which is not known here.
 double bytesOf(const BakedCell& leaf) {
-  constexpr double kLeaf = 28.0, kRun = 2.0;  // a leaf in the octree; a run of a compressed set
+  constexpr double kLeafBytes = 28.0, kRunBytes = 2.0;  // a leaf in the octree; a run of a compressed set
   const CellSets& sets = leaf.sets;
   std::size_t runs = sets.whole.size() + sets.front.size() + sets.back.size();
   for (const DoorRuns* doors : {&sets.whole_doors, &sets.front_doors, &sets.back_doors}) {
@@ -35,7 +35,7 @@ double bytesOf(const BakedCell& leaf) {
       runs += hidden.hidden.size();
     }
   }
-  return kLeaf + kRun * static_cast<double>(runs);
+  return kLeafBytes + kRunBytes * static_cast<double>(runs);
 }
 
 // A cell, and what it is as a leaf: itself, or what all below it become together.
