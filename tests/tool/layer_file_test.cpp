@@ -89,33 +89,44 @@ Pixel sum(const Pixel& a, const Pixel& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
 }
 
-// Runs the file's program on one pixel, as docs/formats.md describes it.
-Pixel composited(const ReadFile& file, std::size_t at) {
-  Pixel star{}, added{}, image{};
+// Runs the file's program, as docs/formats.md describes it, each step on all pixels.
+std::vector<Pixel> composited(const ReadFile& file) {
+  const auto count = static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height);
+  std::vector<Pixel> star(count), added(count), image(count);
   for (const json& text : file.description["program"]) {
     const std::string step = text;
     const std::size_t number = step.find_first_of("0123456789");
     const std::string operation = step.substr(0, number == std::string::npos ? number : number - 1);
-    Pixel layer{};
+    const std::vector<Pixel>* layer = nullptr;
     if (number != std::string::npos) {
       const std::size_t index = std::strtoul(step.c_str() + number, nullptr, 10);
-      layer = file.layers.at(file.description["layers"].at(index)["name"]).pixels[at];
+      layer = &file.layers.at(file.description["layers"].at(index)["name"]).pixels;
     }
-    const bool has_layer = number != std::string::npos;
+    const auto alphaOfLayer = [&](std::size_t i) { return layer != nullptr ? (*layer)[i][3] : 0.0; };
     if (operation == "load") {
-      star = layer;
+      star = layer != nullptr ? *layer : std::vector<Pixel>(count);
     } else if (operation == "in") {
-      star = scaled(star, layer[3]);
+      for (std::size_t i = 0; i < count; ++i) {
+        star[i] = scaled(star[i], alphaOfLayer(i));
+      }
     } else if (operation == "out") {
-      star = scaled(star, 1.0 - layer[3]);
+      for (std::size_t i = 0; i < count; ++i) {
+        star[i] = scaled(star[i], 1.0 - alphaOfLayer(i));
+      }
     } else if (operation == "start sum") {
-      added = has_layer ? layer : star;
+      added = layer != nullptr ? *layer : star;
     } else if (operation == "add") {
-      added = sum(added, has_layer ? layer : star);
+      const std::vector<Pixel>& more = layer != nullptr ? *layer : star;
+      for (std::size_t i = 0; i < count; ++i) {
+        added[i] = sum(added[i], more[i]);
+      }
     } else if (operation == "start image") {
-      image = has_layer ? layer : added;
+      image = layer != nullptr ? *layer : added;
     } else if (operation == "over") {
-      image = sum(image, scaled(has_layer ? layer : added, 1.0 - image[3]));
+      const std::vector<Pixel>& behind = layer != nullptr ? *layer : added;
+      for (std::size_t i = 0; i < count; ++i) {
+        image[i] = sum(image[i], scaled(behind[i], 1.0 - image[i][3]));
+      }
     } else {
       ADD_FAILURE() << step;
     }
@@ -143,8 +154,9 @@ class LayerFile : public ::testing::Test {
     ASSERT_EQ(file.names.at(0), "picture");
     const ReadLayer& picture = file.layers.at("picture");
     ASSERT_EQ(picture.pixels.size(), std::size_t{160 * 90});
+    const std::vector<Pixel> composite = composited(file);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-      const Pixel own = composited(file, i);
+      const Pixel& own = composite[i];
       for (std::size_t c = 0; c < 4; ++c) {
         ASSERT_NEAR(own[c], picture.pixels[i][c], 1e-5) << i;
       }

@@ -333,7 +333,7 @@ TEST(MethodOptions, DatabasesOfABakedFileAreNotBuiltAgain) {
   const TemporaryFolder folder;
   const std::string made = folder.file("city.sight");
   const Outcome bake = runTool({"bake", kCity, "-o", made, "--depth", "1", "--databases",
-                                "area-angle,minimum-sets", "--viewpoint-spacing", "20"});
+                                "area-angle,minimum-sets", "--viewpoint-spacing", "60"});
   ASSERT_EQ(bake.code, 0) << bake.err;
   // They hold the same, but that the file's minimum sets were not made for one walk.
   const std::vector<std::string> database{"--occluders", "database", "--no-times"};
