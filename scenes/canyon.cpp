@@ -205,4 +205,12 @@ MovingScene makeCanyon(const CanyonOptions& options) {
   return scene;
 }
 
+std::size_t canyonTerrainTriangles(const CanyonOptions& options) {
+  std::size_t count = 0;
+  for (const SplitPiece& piece : scenes::canyon::splitTerrain(options).pieces) {
+    count += pieceMesh(piece).indices.size() / 3;
+  }
+  return count;
+}
+
 }  // namespace sightline

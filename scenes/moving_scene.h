@@ -88,6 +88,10 @@ struct CanyonOptions {
 // split in advance. 250 frames. Source: section 12.2.
 MovingScene makeCanyon(const CanyonOptions& options);
 
+// How many triangles the terrain of makeCanyon(options) has after its split. Nothing else of the scene is
+// made, which takes a fraction of the time.
+std::size_t canyonTerrainTriangles(const CanyonOptions& options);
+
 // "demo:toothpicks?n=200&scaling=ud", "demo:canyon?grid=14". Any other URL gives false or an error.
 bool isMovingDemoUrl(std::string_view url);
 Result<MovingScene> makeMovingDemoScene(std::string_view url);

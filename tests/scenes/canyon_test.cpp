@@ -112,6 +112,7 @@ TEST(Canyon, TerrainSplitsIntoAboutThePapersPieces) {
       polygons += scene.scene.objects[i].triangleCount();
       hull_polygons += static_cast<double>(scene.hulls[scene.parts[i].hulls[0]].triangles.size());
     }
+    EXPECT_EQ(polygons, canyonTerrainTriangles({.grid = row.grid}));
     const auto count = static_cast<double>(pieces.size());
     const std::string grid = "grid " + std::to_string(row.grid);
     expectAbout(count, row.pieces, grid + " pieces");

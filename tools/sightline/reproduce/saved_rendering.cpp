@@ -354,8 +354,7 @@ SavedRenderingOptions savedRenderingOptions(const ReproduceOptions& options) {
 
 Result<std::vector<Experiment>> savedRendering(const SavedRenderingOptions& options) {
   Experiment saved = savedTable(options), rates = ratesTable();
-  const auto unsplit =
-      static_cast<double>(trianglesOfClass(makeCanyon({.grid = 1, .inflation = 0.0}), "terrain"));
+  const auto unsplit = static_cast<double>(canyonTerrainTriangles({.grid = 1, .inflation = 0.0}));
   for (const std::uint32_t grid : options.grids) {
     ProgressBar progress(fmt::format("saved rendering, {0} x {0}", grid));
     const MovingScene scene = makeCanyon({.grid = grid});

@@ -106,8 +106,7 @@ class SortingExperiments {
   }
 
  private:
-  LayerTotals sortTimed(const ToothpickOptions& toothpicks, const LayerSettings& settings) {
-    const MovingScene scene = makeToothpicks(toothpicks);
+  LayerTotals sortTimed(const MovingScene& scene, const LayerSettings& settings) {
     LayerTotals totals = sortFrames(scene, settings, options_);
     for (int run = 1; run < (options_.fewer_frames ? 1 : kRuns); ++run) {
       totals.keepFaster(sortFrames(scene, settings, options_));
@@ -189,8 +188,9 @@ class SortingExperiments {
       for (const bool density : {true, false}) {
         const std::string scaling = density ? "ud" : "us";
         const std::size_t column = density ? 0 : 2;
-        const LayerTotals incremental = sortTimed(toothpicks(paper.at, density), papersSorting());
-        const LayerTotals depth_first = sortTimed(toothpicks(paper.at, density), {});
+        const MovingScene scene = makeToothpicks(toothpicks(paper.at, density));
+        const LayerTotals incremental = sortTimed(scene, papersSorting());
+        const LayerTotals depth_first = sortTimed(scene, {});
         const auto add = [&](const std::string& key, double value, PlotSeries& series) {
           row[scaling + key] = value;
           series.values.push_back(value);
@@ -288,8 +288,9 @@ class SortingExperiments {
     ProgressBar progress("velocities");
     for (std::size_t i = 0; i < kVelocities.size(); ++i) {
       const PaperRow& paper = kVelocities[i];
-      const LayerTotals incremental = sortTimed(toothpicks(200, false, paper.at), papersSorting());
-      const LayerTotals depth_first = sortTimed(toothpicks(200, false, paper.at), {});
+      const MovingScene scene = makeToothpicks(toothpicks(200, false, paper.at));
+      const LayerTotals incremental = sortTimed(scene, papersSorting());
+      const LayerTotals depth_first = sortTimed(scene, {});
       Json row{{"velocity", paper.at},
                {"reinsertions", incremental.mean(&Frame::reinsertions)},
                {"pairs", depth_first.mean(&Frame::pair_queries)}};
@@ -351,8 +352,9 @@ class SortingExperiments {
       for (const bool density : {true, false}) {
         const std::string scaling = density ? "ud" : "us";
         const std::size_t column = density ? 0 : 2;
-        const double k3 = sortTimed(toothpicks(paper.at, density), three).mean(&Frame::sort_us);
-        const double k1 = sortTimed(toothpicks(paper.at, density), one).mean(&Frame::sort_us);
+        const MovingScene scene = makeToothpicks(toothpicks(paper.at, density));
+        const double k3 = sortTimed(scene, three).mean(&Frame::sort_us);
+        const double k1 = sortTimed(scene, one).mean(&Frame::sort_us);
         const double paper_k3 = paper.values[column], paper_k1 = paper.values[column + 1];
         row[scaling + "_k3"] = k3;
         row[scaling + "_k1"] = k1;
