@@ -9,6 +9,8 @@
 
 #include "src/geometry/exact_point.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sightline::geometry {
@@ -124,6 +126,25 @@ int orientation(const Lattice& lattice, int axis, const Vec3d& a, const Vec3d& b
   return ((lattice.whole(a[u]) - cu) * (lattice.whole(b[v]) - cv) -
           (lattice.whole(a[v]) - cv) * (lattice.whole(b[u]) - cu))
       .sign();
+}
+
+bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) {
+      return false;
+    }
+  }
+  const std::array points{Vec3d(a), Vec3d(p), Vec3d(b)};
+  const Vec3d to_point = points[1] - points[0], to_end = points[2] - points[0];
+  // Most vertices are told apart by far more than rounding, which is below 1e-15 here.
+  if (length(cross(to_point, to_end)) > 1e-12 * length(to_point) * length(to_end) ||
+      !std::all_of(points.begin(), points.end(), [](const Vec3d& at) { return Lattice::allowed(at); })) {
+    return false;
+  }
+  const Lattice lattice = Lattice::of(points);
+  return orientation(lattice, 0, points[0], points[1], points[2]) == 0 &&
+         orientation(lattice, 1, points[0], points[1], points[2]) == 0 &&
+         orientation(lattice, 2, points[0], points[1], points[2]) == 0;
 }
 
 int longestAxis(const Lattice& lattice, const PlanePoints& triangle) {

@@ -20,6 +20,10 @@ int orientation(const Lattice& lattice, const Vec3d& a, const Vec3d& b, const Ve
 // normal of the triangle is positive along the axis.
 int orientation(const Lattice& lattice, int axis, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
+// Whether p lies exactly on the edge from a to b, between its ends or at one of them. False where the three
+// have no lattice.
+bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b);
+
 struct PlanePoints {
   Vec3d a, b, c;  // not on one line
 };

@@ -40,6 +40,9 @@ struct PixelView {
   double metres = 1.0;    // the length of camera space's unit, a power of two
   double stretch = 1.0;   // unit_x, unit_y and unit_z are at most so long
   bool mirrored = false;  // triangles that are counter-clockwise in that space appear clockwise
+  // How far rounding may have moved that space along the view, in camera space; where depths are divided by,
+  // it is less than 2^-22 of the near plane's.
+  double depth_rounding = 0.0;
 
   PixelView() = default;
   // region: of the same viewers in scene space.
@@ -88,7 +91,8 @@ struct PixelView {
   // The view of geometry that is given in another space: a point p there has the image of scene_from_space p
   // here. Camera space is then so scaled that no vector of that space becomes longer in it. Not sane() unless
   // the matrix is affine and stretches no direction more than kLargestStretch times as much as another, and
-  // the places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels.
+  // the places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels,
+  // and in perspective no depth by more than a small part of itself.
   PixelView inSpace(const Mat4& scene_from_space) const {
     const auto column = [&](int i) {
       return Vec3d(scene_from_space(0, i), scene_from_space(1, i), scene_from_space(2, i));
@@ -132,7 +136,10 @@ struct PixelView {
     const auto size = [](const Vec3d& v) { return maxComponent(abs(v)); };
     const double rounding =
         0x1p-46 * (size(eye) + size(origin) + moved.metres * moved.stretch * size(moved.eye));
-    moved.valid_ = rounding * std::max(scale_x, scale_y) < 0x1p-16 * (orthographic ? 1.0 : near);
+    moved.depth_rounding = rounding / moved.metres;
+    // In a buffer of few pixels the depth is what moves most.
+    moved.valid_ = rounding * std::max(scale_x, scale_y) < 0x1p-16 * (orthographic ? 1.0 : near) &&
+                   (orthographic || rounding < 0x1p-22 * near);
     return moved;
   }
   // Transforms the normal of a plane.

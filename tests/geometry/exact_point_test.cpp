@@ -7,6 +7,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -122,6 +123,21 @@ void expectPoint(const RationalVec& exact, const ExactPoint& point) {
   const RationalVec off = RationalVec(point.rounded) - exact;
   EXPECT_LE(dot(off, off), Rational(point.error) * Rational(point.error));
   EXPECT_EQ(point.error == 0.0, dot(off, off) == 0);
+}
+
+TEST(ExactPoint, LiesBetweenTwoOthersOnlyExactly) {
+  const Vec3f a(-3.0f, 1.0f, 0.5f), b(5.0f, 5.0f, -1.5f), middle(1.0f, 3.0f, -0.5f);
+  EXPECT_TRUE(liesBetween(a, middle, b));
+  EXPECT_TRUE(liesBetween(b, middle, a));
+  EXPECT_TRUE(liesBetween(a, a, b));
+  EXPECT_TRUE(liesBetween(a, b, b));
+  EXPECT_FALSE(liesBetween(a, b, middle)) << "beyond the end";
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3f beside = middle;
+    beside[axis] = std::nextafter(beside[axis], 9.0f);
+    EXPECT_FALSE(liesBetween(a, beside, b)) << axis;
+  }
+  EXPECT_FALSE(liesBetween(a, middle, Vec3f(std::numeric_limits<float>::infinity(), 5.0f, 0.0f)));
 }
 
 TEST(ExactPoint, DefinedPointsAreRoundedOnce) {

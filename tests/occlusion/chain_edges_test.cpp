@@ -84,7 +84,7 @@ std::vector<EdgeBits> edgesOf(const SurfaceSet& set, const scene::PixelView& vie
     edges.add(static_cast<std::uint32_t>(i), 1);
   }
   std::vector<BoundaryChain> boundary;
-  const std::uint32_t added = edges.endGroup(boundary);
+  const std::uint32_t added = edges.endGroup(boundary).edges;
   EXPECT_EQ(added, edges.edges().size());
   std::vector<EdgeBits> bits;
   for (const BoundaryChain& chain : boundary) {

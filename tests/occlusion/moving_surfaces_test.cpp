@@ -85,6 +85,45 @@ TEST(MovingSurfaces, AreDrawnWithAffineMatricesOnly) {
   EXPECT_FALSE(raster.depthBuffer().covered(8, 8));
 }
 
+// The picture is one pixel and shows almost all directions, so that what moves a wall across the near plane
+// moves its image by next to nothing.
+TEST(MovingSurfaces, HideNothingThatRoundingMovesBeyondTheNearPlane) {
+  constexpr float kFar = 1e9f, kWide = 65536.0f;
+  const Scene scene =
+      sceneOfCorners(std::array<Vec3f, 6>{Vec3f(kFar, -kWide, -kWide), Vec3f(kFar, kWide, -kWide),
+                                          Vec3f(kFar, kWide, kWide), Vec3f(kFar, -kWide, -kWide),
+                                          Vec3f(kFar, kWide, kWide), Vec3f(kFar, -kWide, kWide)},
+                     true);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 1, .height = 1});
+  test::Random random(1);
+  std::size_t before_the_plane = 0;
+  for (std::size_t n = 0; n < test::rounds(3'000u); ++n) {
+    const double angle = random.in(0.1, 1.4), cosine = std::cos(angle), sine = std::sin(angle);
+    Mat4 turned;
+    turned(0, 0) = turned(1, 1) = cosine;
+    turned(0, 1) = -sine;
+    turned(1, 0) = sine;
+    View view = frontView();
+    view.forward = {cosine, sine, 0.0};
+    view.right = {sine, -cosine, 0.0};
+    view.up = {0.0, 0.0, 1.0};
+    view.tan_half_fovy = 13.0;
+    view.z_near = 0.1;
+    view.eye = view.forward * (double{kFar} - view.z_near) + Vec3d(random.in(-3e-7, 3e-7), 0.0, 0.0);
+    const auto exactly = [](double v) { return static_cast<long double>(v); };
+    const long double depth = exactly(cosine) * (exactly(cosine) * exactly(kFar) - exactly(view.eye.x)) +
+                              exactly(sine) * (exactly(sine) * exactly(kFar) - exactly(view.eye.y));
+    if (depth < 0.1L * (1.0L - 1e-7L)) {
+      ++before_the_plane;
+      raster.begin(view);
+      raster.draw(MovingSurfaces{&surfaces, turned}, kDrawAll);
+      EXPECT_FALSE(raster.depthBuffer().covered(0, 0)) << "a renderer clips the wall away";
+    }
+  }
+  EXPECT_GT(before_the_plane, test::rounds(1'000u));
+}
+
 class RandomMovingSurfaces : public testing::TestWithParam<bool> {};
 
 // The view that sees the moved surfaces where they are before they are moved.

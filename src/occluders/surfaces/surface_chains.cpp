@@ -10,12 +10,9 @@
 #include "src/base/part_store.h"
 #include "src/base/scratch_array.h"
 #include "src/geometry/exact_point.h"
-#include "src/geometry/whole.h"
 
 namespace sightline::occluders {
 namespace {
-
-using geometry::Lattice;
 
 constexpr std::size_t kPatchesOfPart = 2048;
 
@@ -123,26 +120,6 @@ struct KeptChains {
   base::KeptItems<Vec3f> vertices;
 };
 
-// Whether p lies exactly on the edge from a to b, between its ends.
-bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) {
-      return false;
-    }
-  }
-  const std::array points{Vec3d(a), Vec3d(p), Vec3d(b)};
-  const Vec3d to_point = points[1] - points[0], to_end = points[2] - points[0];
-  // Most vertices are told apart by far more than rounding, which is below 1e-15 here.
-  if (length(cross(to_point, to_end)) > 1e-12 * length(to_point) * length(to_end) ||
-      !std::all_of(points.begin(), points.end(), [](const Vec3d& at) { return Lattice::allowed(at); })) {
-    return false;
-  }
-  const Lattice lattice = Lattice::of(points);
-  return geometry::orientation(lattice, 0, points[0], points[1], points[2]) == 0 &&
-         geometry::orientation(lattice, 1, points[0], points[1], points[2]) == 0 &&
-         geometry::orientation(lattice, 2, points[0], points[1], points[2]) == 0;
-}
-
 // Joins the edges of one cluster after the other.
 class ChainMaker {
  public:
@@ -182,7 +159,7 @@ class ChainMaker {
   void addVertex(const Vec3f& vertex, std::uint32_t first_of_chain) {
     std::vector<Vec3f>& vertices = made_.vertices;
     if (vertices.size() >= first_of_chain + std::size_t{2} &&
-        liesBetween(*(vertices.end() - 2), vertices.back(), vertex)) {
+        geometry::liesBetween(*(vertices.end() - 2), vertices.back(), vertex)) {
       vertices.pop_back();
     }
     vertices.push_back(vertex);

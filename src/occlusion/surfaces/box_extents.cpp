@@ -84,7 +84,7 @@ bool BoxExtents::of(const Box& box, const PixelBox& image, BoxExtent& extent) co
     extent.nearest = view_.orthographic ? -image.nearest : 1.0 / image.nearest;
     extent.farthest = view_.orthographic ? -image.farthest : 1.0 / image.farthest;
     extent.rectangle = {image.x0, image.y0, image.x1 + 1, image.y1 + 1};
-    if (extent.nearest > clip_depth_ && extent.nearest > viewers_max_.z) {
+    if (extent.nearest - view_.depth_rounding > clip_depth_ && extent.nearest > viewers_max_.z) {
       return true;
     }
   }
@@ -96,7 +96,7 @@ bool BoxExtents::of(const Box& box, BoxExtent& extent) const {
   const Vec3d middle = view.toCamera(center(box) - view.eye), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
   const Vec3d size{dot(abs(view.right), half), dot(abs(view.up), half), dot(abs(view.forward), half)};
   const double reach = maxComponent(abs(middle)) + maxComponent(size);
-  const double rounding = 1e-14 * reach * view.stretch;
+  const double rounding = 1e-14 * reach * view.stretch + view.depth_rounding;
   extent.nearest = middle.z - size.z - rounding;
   extent.farthest = middle.z + size.z + rounding;
   if (!(extent.farthest > clip_depth_)) {

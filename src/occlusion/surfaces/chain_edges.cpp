@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+
+#include "src/geometry/exact_point.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/surfaces/chain_edges.cpp"
@@ -87,6 +90,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::occlusion {
+namespace {
+
+constexpr std::int64_t kMostLinked = std::int64_t{1} << 30;  // the value of a line between two cut ends
+
+}  // namespace
 
 HWY_EXPORT(projectEnds);
 
@@ -99,6 +107,7 @@ void ChainEdges::begin(const SurfaceSet& set, const scene::PixelView& view, doub
   several_viewers_ = view.viewers.several();
   chains_.clear();
   cuts_.clear();
+  cut_ends_.clear();
   count_ = 0;
   forget();
 }
@@ -132,13 +141,16 @@ GridPoint ChainEdges::pixelOf(const Vec3d& camera) const {
           nearestWhole(view_.pixelY(camera, inverse) * kGridStep)};
 }
 
-// Where an edge crosses the clip plane; the same from both sides.
-Vec3d ChainEdges::cutPoint(const Vec3f& a, const Vec3f& b) const {
+// Notes that a line of this value ends where an edge crosses the clip plane, and returns that point: the same
+// one from both sides. What begins there has the value with the other sign.
+Vec3d ChainEdges::addCutEnd(const Vec3f& a, const Vec3f& b, std::int32_t value) {
   const bool ascending = std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  const Vec3d from = toCamera(ascending ? a : b), to = toCamera(ascending ? b : a);
+  const Vec3f &low = ascending ? a : b, &high = ascending ? b : a;
+  const Vec3d from = toCamera(low), to = toCamera(high);
   const double t = (clip_depth_ - from.z) / (to.z - from.z);
   Vec3d point = from + (to - from) * t;
   point.z = clip_depth_;
+  cut_ends_.push_back({low, high, point, value});
   return point;
 }
 
@@ -155,7 +167,8 @@ void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     if (shows[k] != shows[next]) {
-      (shows[k] ? from : to) = cutPoint(set_->vertices[triangle[k]], set_->vertices[triangle[next]]);
+      (shows[k] ? from : to) =
+          addCutEnd(set_->vertices[triangle[k]], set_->vertices[triangle[next]], shows[k] ? -value : value);
     }
   }
   makeRoom(1);
@@ -163,14 +176,32 @@ void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t
   cuts_.push_back({count_++, from, to});
 }
 
+// Clips the edges of all chains but those of cuts.
+void ChainEdges::clipAll() {
+  auto cut = cuts_.begin();
+  for (const BoundaryChain& chain : chains_) {
+    if (cut != cuts_.end() && chain.count == 1 && cut->edge == chain.first) {
+      ++cut;
+      continue;
+    }
+    for (std::uint32_t edge = chain.first; edge < chain.first + chain.count; ++edge) {
+      clip(edge, chain.value);
+    }
+  }
+}
+
 // Sets an edge's line to what is left of it beyond the clip depth.
-void ChainEdges::clip(std::uint32_t edge) {
+void ChainEdges::clip(std::uint32_t edge, std::int32_t value) {
   const Vec3f a(ends_[0][edge], ends_[1][edge], ends_[2][edge]),
       b(ends_[3][edge], ends_[4][edge], ends_[5][edge]);
   const Vec3d from = toCamera(a), to = toCamera(b);
   const bool from_shows = from.z >= clip_depth_, to_shows = to.z >= clip_depth_;
-  if (from_shows || to_shows) {
-    setLine(edge, from_shows ? from : cutPoint(a, b), to_shows ? to : cutPoint(a, b));
+  if (from_shows && to_shows) {
+    setLine(edge, from, to);
+  } else if (from_shows) {
+    setLine(edge, from, addCutEnd(a, b, value));
+  } else if (to_shows) {
+    setLine(edge, addCutEnd(a, b, -value), to);
   } else {
     // To the right of the buffer, where no edge matters.
     constexpr GridPoint kNowhere{kLargestGrid, 0.0};
@@ -180,6 +211,62 @@ void ChainEdges::clip(std::uint32_t edge) {
       camera_lines_.set(edge, {kFarAway, 0.0, 1.0}, {kFarAway, 0.0, 1.0});
     }
   }
+}
+
+// A chain has one edge for those of several triangles side by side on one line, and rounding may let the clip
+// plane cut it at another point than theirs. What is between these points, on that line, is added. Returns
+// whether all lines at the clip plane then end where others begin.
+bool ChainEdges::closeCut() {
+  std::sort(cut_ends_.begin(), cut_ends_.end(), [](const CutEnd& p, const CutEnd& q) {
+    return std::tie(p.a.x, p.a.y, p.a.z, p.b.x, p.b.y, p.b.z) <
+           std::tie(q.a.x, q.a.y, q.a.z, q.b.x, q.b.y, q.b.z);
+  });
+  // Of each edge, what is left over of its ends.
+  std::size_t open = 0;
+  for (std::size_t first = 0; first < cut_ends_.size();) {
+    CutEnd all = cut_ends_[first];
+    for (++first; first < cut_ends_.size() && cut_ends_[first].a == all.a && cut_ends_[first].b == all.b;
+         ++first) {
+      all.value += cut_ends_[first].value;
+    }
+    if (all.value != 0) {
+      cut_ends_[open++] = all;
+    }
+  }
+  cut_ends_.resize(open);
+  for (std::size_t i = 0; i < open; ++i) {
+    for (std::size_t j = i + 1; j < open && cut_ends_[i].value != 0; ++j) {
+      if (!link(cut_ends_[i], cut_ends_[j])) {
+        return false;
+      }
+    }
+  }
+  return std::all_of(cut_ends_.begin(), cut_ends_.end(), [](const CutEnd& end) { return end.value == 0; });
+}
+
+// Adds a line from one end to the other, if one of their edges is a part of the other one and the lines at
+// the one lack what those at the other have too many of. False if the line's value would be too large.
+bool ChainEdges::link(CutEnd& p, CutEnd& q) {
+  const auto isPart = [](const CutEnd& part, const CutEnd& whole) {
+    return geometry::liesBetween(whole.a, part.a, whole.b) && geometry::liesBetween(whole.a, part.b, whole.b);
+  };
+  if (p.value == 0 || q.value == 0 || (p.value > 0) == (q.value > 0) || !(isPart(p, q) || isPart(q, p))) {
+    return true;
+  }
+  CutEnd &from = p.value > 0 ? p : q, &to = p.value > 0 ? q : p;
+  const std::int64_t value = std::min(from.value, -to.value);
+  if (value > kMostLinked) {
+    return false;
+  }
+  lines_.reserve(count_ + 1);
+  if (several_viewers_) {
+    camera_lines_.reserve(count_ + 1);
+  }
+  chains_.push_back({count_, 1, static_cast<std::int32_t>(value)});
+  setLine(count_++, from.at, to.at);
+  from.value -= value;
+  to.value += value;
+  return true;
 }
 
 // from, to: camera space, not nearer than the clip depth.
@@ -231,7 +318,7 @@ void ChainEdges::divideSwept(std::size_t chain, std::uint32_t edge) {
   chains_.push_back({first, count_ - first, chains_[chain].value});
 }
 
-std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
+ChainEdges::GroupBoundary ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   lines_.reserve(count_);
   if (several_viewers_) {
     camera_lines_.reserve(count_);
@@ -240,13 +327,12 @@ std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
                                                     ends_[3].data(), ends_[4].data(), ends_[5].data()};
   CameraLines* const camera = several_viewers_ ? &camera_lines_ : nullptr;
   if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_, camera)) {
-    for (std::uint32_t edge = 0; edge < count_; ++edge) {
-      clip(edge);
-    }
+    clipAll();
   }
   for (const Cut& cut : cuts_) {
     setLine(cut.edge, cut.from, cut.to);
   }
+  const bool closed = closeCut();
   if (several_viewers_) {
     divideSwept();
     findSweeps(view_, clip_depth_, camera_lines_, lines_, count_, sweeps_);
@@ -267,8 +353,9 @@ std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   }
   chains_.clear();
   cuts_.clear();
+  cut_ends_.clear();
   count_ = 0;
-  return static_cast<std::uint32_t>(edges_.size()) - before;
+  return {static_cast<std::uint32_t>(edges_.size()) - before, closed};
 }
 
 }  // namespace sightline::occlusion

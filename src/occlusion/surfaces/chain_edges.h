@@ -27,8 +27,12 @@ class ChainEdges {
   // triangle beyond the plane is the surface.
   void addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value);
   // Appends the group's boundary: those of its edges that matter to the buffer, or what is left of them
-  // beyond the clip depth. Returns their number.
-  std::uint32_t endGroup(std::vector<BoundaryChain>& boundary);
+  // beyond the clip depth.
+  struct GroupBoundary {
+    std::uint32_t edges = 0;
+    bool closed = true;  // otherwise it bounds nothing: lines at the clip plane end where no other begins
+  };
+  GroupBoundary endGroup(std::vector<BoundaryChain>& boundary);
 
   // The edges of the groups since begin() or forget().
   std::span<const BoundaryEdge> edges() const { return edges_; }
@@ -43,14 +47,24 @@ class ChainEdges {
     Vec3d from, to;  // camera space
   };
 
+  // Where the clip plane cuts an edge of the scene.
+  struct CutEnd {
+    Vec3f a, b;              // the edge, ascending
+    Vec3d at;                // camera space
+    std::int64_t value = 0;  // of the lines that end there, less those that begin there
+  };
+
   void makeRoom(std::size_t more);
-  void clip(std::uint32_t edge);
+  void clipAll();
+  void clip(std::uint32_t edge, std::int32_t value);
+  bool closeCut();
+  bool link(CutEnd& a, CutEnd& b);
+  Vec3d addCutEnd(const Vec3f& a, const Vec3f& b, std::int32_t value);
   void divideSwept();
   void divideSwept(std::size_t chain, std::uint32_t edge);
   void setLine(std::uint32_t edge, const Vec3d& from, const Vec3d& to);
   Vec3d toCamera(const Vec3f& point) const { return view_.toCamera(Vec3d(point) - view_.eye); }
   GridPoint pixelOf(const Vec3d& camera) const;
-  Vec3d cutPoint(const Vec3f& a, const Vec3f& b) const;
 
   const SurfaceSet* set_ = nullptr;
   scene::PixelView view_;
@@ -61,6 +75,7 @@ class ChainEdges {
   std::array<std::vector<float>, kCoordinates> ends_;
   std::uint32_t count_ = 0;  // of ends_ that are used
   std::vector<Cut> cuts_;
+  std::vector<CutEnd> cut_ends_;
   GridLines lines_;
   // If the view is drawn for several viewers: the same lines, and how far they are swept.
   bool several_viewers_ = false;

@@ -272,7 +272,11 @@ void SurfaceRaster::beginGroup() {
 
 void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, SurfaceMemory::Rest& rest) {
   Group& group = groups_.back();
-  group.edges = chains_.endGroup(boundary_);
+  const ChainEdges::GroupBoundary made = chains_.endGroup(boundary_);
+  if (!made.closed) {
+    boundary_.resize(group.first_chain);  // it covers nothing
+  }
+  group.edges = made.edges;
   group.chain_count = static_cast<std::uint32_t>(boundary_.size()) - group.first_chain;
   group.depth_count = static_cast<std::uint32_t>(depths_.size()) - group.first_depth;
   group.rectangle = rectangle;

@@ -313,8 +313,10 @@ DepthBound SurfaceView::boundOf(const Plane& plane, double farthest) const {
 DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size, double farthest) const {
   const scene::PixelView& view = extents_.view();
   const double floor = view.reciprocalDepth(farthest);
+  // The margins below, a part of the value each, are more than rounding where depths are divided by.
+  const double rounding = view.orthographic ? view.depth_rounding * view.metres : 0.0;
   DepthBound bound;
-  bound.floor = static_cast<float>(floor - 1e-6 * std::abs(floor));
+  bound.floor = static_cast<float>(floor - 1e-6 * std::abs(floor) - rounding);
   bound.at_origin = bound.floor;
   // Reciprocal depth of the plane: n . (x, y, 1) in camera space over minus its value at the eye; in an
   // orthographic view minus the depth.
@@ -335,7 +337,7 @@ DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size,
   // The least over the pixel's square, and less than rounding.
   bound.along_x = static_cast<float>(a);
   bound.along_y = static_cast<float>(b);
-  bound.at_origin = static_cast<float>(c + std::min(a, 0.0) + std::min(b, 0.0) - 1e-6 * range);
+  bound.at_origin = static_cast<float>(c + std::min(a, 0.0) + std::min(b, 0.0) - 1e-6 * range - rounding);
   return bound;
 }
 
