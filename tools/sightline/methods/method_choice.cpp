@@ -9,11 +9,6 @@ namespace {
 constexpr double kFewObjects = 64.0;
 constexpr double kAlmostAllSeeThrough = 0.9;
 constexpr double kLittleToHideBehind = 0.3;
-// In scenes of rooms and streets, the walls inside are more than the box around them. In landscapes and on
-// ships, polygons are many and small, and only whole surfaces hide much.
-constexpr double kWalls = 1.1;
-// Where walls hide, more occluders pay with more objects in the frustum, and in the end whole surfaces do.
-constexpr double kSomeObjects = 500.0, kManyObjects = 2000.0;
 
 MethodChoice frustumAlone(const SceneFacts& facts, std::string why) {
   return {facts, "frustum", {}, std::move(why)};
@@ -21,10 +16,6 @@ MethodChoice frustumAlone(const SceneFacts& facts, std::string why) {
 
 MethodChoice wholeSurfaces(const SceneFacts& facts, std::string why) {
   return {facts, "depth-pyramid", {{"surfaces", "alone"}}, std::move(why)};
-}
-
-MethodChoice largestPolygons(const SceneFacts& facts, const char* count, std::string why) {
-  return {facts, "depth-pyramid", {{"surfaces", "none"}, {"occluder-count", count}}, std::move(why)};
 }
 
 MethodChoice byRules(const SceneFacts& facts) {
@@ -41,16 +32,7 @@ MethodChoice byRules(const SceneFacts& facts) {
   if (facts.occluder_area < kLittleToHideBehind) {
     return frustumAlone(facts, area + ", so there is little to hide behind");
   }
-  if (facts.occluder_area < kWalls) {
-    return wholeSurfaces(facts, area + ", as in landscapes, where whole surfaces hide most");
-  }
-  if (facts.in_frustum >= kManyObjects) {
-    return wholeSurfaces(facts, in_frustum + ", so many that the tightest method pays");
-  }
-  const char* const count = facts.in_frustum < kSomeObjects ? "64" : "256";
-  return largestPolygons(
-      facts, count,
-      fmt::format("{}, as among walls, where the largest polygons hide most, and {}", area, in_frustum));
+  return wholeSurfaces(facts, fmt::format("{}, and {}, so the tightest method pays", area, in_frustum));
 }
 
 }  // namespace
