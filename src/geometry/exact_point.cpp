@@ -128,16 +128,11 @@ int orientation(const Lattice& lattice, int axis, const Vec3d& a, const Vec3d& b
       .sign();
 }
 
-bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) {
-      return false;
-    }
-  }
-  const std::array points{Vec3d(a), Vec3d(p), Vec3d(b)};
-  const Vec3d to_point = points[1] - points[0], to_end = points[2] - points[0];
-  // Most vertices are told apart by far more than rounding, which is below 1e-15 here.
-  if (length(cross(to_point, to_end)) > 1e-12 * length(to_point) * length(to_end) ||
+bool areOnOneLine(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  const std::array points{Vec3d(a), Vec3d(b), Vec3d(c)};
+  const Vec3d to_b = points[1] - points[0], to_c = points[2] - points[0];
+  // Most points are told apart by far more than rounding, which is below 1e-15 here.
+  if (length(cross(to_b, to_c)) > 1e-12 * length(to_b) * length(to_c) ||
       !std::all_of(points.begin(), points.end(), [](const Vec3d& at) { return Lattice::allowed(at); })) {
     return false;
   }
@@ -145,6 +140,15 @@ bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
   return orientation(lattice, 0, points[0], points[1], points[2]) == 0 &&
          orientation(lattice, 1, points[0], points[1], points[2]) == 0 &&
          orientation(lattice, 2, points[0], points[1], points[2]) == 0;
+}
+
+bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) {
+      return false;
+    }
+  }
+  return areOnOneLine(a, p, b);
 }
 
 int longestAxis(const Lattice& lattice, const PlanePoints& triangle) {

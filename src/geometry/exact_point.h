@@ -20,6 +20,8 @@ int orientation(const Lattice& lattice, const Vec3d& a, const Vec3d& b, const Ve
 // normal of the triangle is positive along the axis.
 int orientation(const Lattice& lattice, int axis, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
+// Whether three points lie exactly on one line. False where they have no lattice.
+bool areOnOneLine(const Vec3f& a, const Vec3f& b, const Vec3f& c);
 // Whether p lies exactly on the edge from a to b, between its ends or at one of them. False where the three
 // have no lattice.
 bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b);

@@ -40,8 +40,8 @@ struct PixelView {
   double metres = 1.0;    // the length of camera space's unit, a power of two
   double stretch = 1.0;   // unit_x, unit_y and unit_z are at most so long
   bool mirrored = false;  // triangles that are counter-clockwise in that space appear clockwise
-  // How far rounding may have moved that space along the view, in camera space; where depths are divided by,
-  // it is less than 2^-22 of the near plane's.
+  // How far rounding may have moved that space along the view, in camera space; in perspective less than
+  // 2^-22 times the near distance.
   double depth_rounding = 0.0;
 
   PixelView() = default;
@@ -92,7 +92,7 @@ struct PixelView {
   // here. Camera space is then so scaled that no vector of that space becomes longer in it. Not sane() unless
   // the matrix is affine and stretches no direction more than kLargestStretch times as much as another, and
   // the places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels,
-  // and in perspective no depth by more than a small part of itself.
+  // and in perspective no depth by more than 2^-22 times the near distance.
   PixelView inSpace(const Mat4& scene_from_space) const {
     const auto column = [&](int i) {
       return Vec3d(scene_from_space(0, i), scene_from_space(1, i), scene_from_space(2, i));

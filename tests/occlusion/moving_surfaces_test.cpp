@@ -85,43 +85,65 @@ TEST(MovingSurfaces, AreDrawnWithAffineMatricesOnly) {
   EXPECT_FALSE(raster.depthBuffer().covered(8, 8));
 }
 
-// The picture is one pixel and shows almost all directions, so that what moves a wall across the near plane
-// moves its image by next to nothing.
-TEST(MovingSurfaces, HideNothingThatRoundingMovesBeyondTheNearPlane) {
-  constexpr float kFar = 1e9f, kWide = 65536.0f;
-  const Scene scene =
-      sceneOfCorners(std::array<Vec3f, 6>{Vec3f(kFar, -kWide, -kWide), Vec3f(kFar, kWide, -kWide),
-                                          Vec3f(kFar, kWide, kWide), Vec3f(kFar, -kWide, -kWide),
-                                          Vec3f(kFar, kWide, kWide), Vec3f(kFar, -kWide, kWide)},
-                     true);
-  const SurfaceSet surfaces = findSurfaces(scene.view());
-  Rasteriser raster({.width = 1, .height = 1});
-  test::Random random(1);
-  std::size_t before_the_plane = 0;
-  for (std::size_t n = 0; n < test::rounds(3'000u); ++n) {
-    const double angle = random.in(0.1, 1.4), cosine = std::cos(angle), sine = std::sin(angle);
-    Mat4 turned;
-    turned(0, 0) = turned(1, 1) = cosine;
-    turned(0, 1) = -sine;
-    turned(1, 0) = sine;
-    View view = frontView();
+// A wall that is turned about the vertical axis, and the view that looks at it along its normal.
+struct TurnedWall {
+  SurfaceSet surfaces;
+  Mat4 scene_from_surfaces;
+  View view;
+  long double depth = 0.0L;  // of the wall, exactly
+
+  // far: where the wall is along its normal, metres. before: how far the eye is before it, but for rounding.
+  TurnedWall(float far, double before, double angle) {
+    const float wide = 65536.0f;
+    const std::array<Vec3f, 6> corners{Vec3f(far, -wide, -wide), Vec3f(far, wide, -wide),
+                                       Vec3f(far, wide, wide),   Vec3f(far, -wide, -wide),
+                                       Vec3f(far, wide, wide),   Vec3f(far, -wide, wide)};
+    surfaces = findSurfaces(sceneOfCorners(corners, true).view());
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    scene_from_surfaces(0, 0) = scene_from_surfaces(1, 1) = cosine;
+    scene_from_surfaces(0, 1) = -sine;
+    scene_from_surfaces(1, 0) = sine;
+    view = frontView();
     view.forward = {cosine, sine, 0.0};
     view.right = {sine, -cosine, 0.0};
     view.up = {0.0, 0.0, 1.0};
-    view.tan_half_fovy = 13.0;
-    view.z_near = 0.1;
-    view.eye = view.forward * (double{kFar} - view.z_near) + Vec3d(random.in(-3e-7, 3e-7), 0.0, 0.0);
-    const auto exactly = [](double v) { return static_cast<long double>(v); };
-    const long double depth = exactly(cosine) * (exactly(cosine) * exactly(kFar) - exactly(view.eye.x)) +
-                              exactly(sine) * (exactly(sine) * exactly(kFar) - exactly(view.eye.y));
-    if (depth < 0.1L * (1.0L - 1e-7L)) {
-      ++before_the_plane;
-      raster.begin(view);
-      raster.draw(MovingSurfaces{&surfaces, turned}, kDrawAll);
-      EXPECT_FALSE(raster.depthBuffer().covered(0, 0)) << "a renderer clips the wall away";
+    view.eye = view.forward * (double{far} - before);
+    const auto along = [&](double direction, double eye) {
+      const auto exact = static_cast<long double>(direction);
+      return exact * (exact * static_cast<long double>(far) - static_cast<long double>(eye));
+    };
+    depth = along(cosine, view.eye.x) + along(sine, view.eye.y);
+  }
+};
+
+// The picture is one pixel and shows almost all directions, so that what moves a wall across the near plane
+// moves its image by next to nothing.
+TEST(MovingSurfaces, HideNothingThatRoundingMovesBeyondTheNearPlane) {
+  constexpr long double kNear = 0.1L;
+  Rasteriser raster({.width = 1, .height = 1});
+  test::Random random(1);
+  for (const bool orthographic : {false, true}) {
+    for (const float far : {1e9f, 1e3f}) {
+      std::size_t before_the_plane = 0, covered = 0;
+      for (std::size_t n = 0; n < test::rounds(2'000u); ++n) {
+        TurnedWall wall(far, 0.1 + random.in(-3e-7, 3e-7), random.in(0.1, 1.4));
+        wall.view.tan_half_fovy = 13.0;
+        wall.view.orthographic = orthographic;
+        wall.view.ortho_height = 8.0;
+        wall.view.z_near = static_cast<double>(kNear);
+        raster.begin(wall.view);
+        raster.draw(MovingSurfaces{&wall.surfaces, wall.scene_from_surfaces}, kDrawAll);
+        const bool covers = raster.depthBuffer().covered(0, 0);
+        covered += covers ? 1 : 0;
+        if (wall.depth < kNear * (1.0L - 1e-9L)) {
+          ++before_the_plane;
+          EXPECT_FALSE(covers) << "a renderer clips the wall away; " << far << ", " << orthographic;
+        }
+      }
+      EXPECT_GT(before_the_plane, test::rounds(500u));
+      EXPECT_TRUE(far > 1e6f || covered > test::rounds(200u)) << orthographic;
     }
   }
-  EXPECT_GT(before_the_plane, test::rounds(1'000u));
 }
 
 class RandomMovingSurfaces : public testing::TestWithParam<bool> {};

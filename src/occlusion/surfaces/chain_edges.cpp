@@ -92,7 +92,10 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 namespace {
 
-constexpr std::int64_t kMostLinked = std::int64_t{1} << 30;  // the value of a line between two cut ends
+// Of the lines that are added where a boundary is cut: their values, and how many ends they may have. Each
+// end is compared with all others.
+constexpr std::int64_t kMostLinked = std::int64_t{1} << 30;
+constexpr std::size_t kMostOpen = 64;
 
 }  // namespace
 
@@ -105,11 +108,15 @@ void ChainEdges::begin(const SurfaceSet& set, const scene::PixelView& view, doub
   clip_depth_ = clip_depth;
   buffer_ = buffer;
   several_viewers_ = view.viewers.several();
+  forgetGroup();
+  forget();
+}
+
+void ChainEdges::forgetGroup() {
   chains_.clear();
   cuts_.clear();
   cut_ends_.clear();
   count_ = 0;
-  forget();
 }
 
 void ChainEdges::makeRoom(std::size_t more) {
@@ -213,15 +220,16 @@ void ChainEdges::clip(std::uint32_t edge, std::int32_t value) {
   }
 }
 
-// A chain has one edge for those of several triangles side by side on one line, and rounding may let the clip
-// plane cut it at another point than theirs. What is between these points, on that line, is added. Returns
-// whether all lines at the clip plane then end where others begin.
+// Triangles side by side may divide a line into several edges where a chain has a single one. Rounding may
+// then let the clip plane cut the line at one point of theirs and at another of the chain's. What lies
+// between the two points, on the line, is added. So on each line the boundary ends as often as it begins, as
+// that of the surface does there. Returns whether all of it is closed now.
 bool ChainEdges::closeCut() {
   std::sort(cut_ends_.begin(), cut_ends_.end(), [](const CutEnd& p, const CutEnd& q) {
     return std::tie(p.a.x, p.a.y, p.a.z, p.b.x, p.b.y, p.b.z) <
            std::tie(q.a.x, q.a.y, q.a.z, q.b.x, q.b.y, q.b.z);
   });
-  // Of each edge, what is left over of its ends.
+  // Ends at the same edge are one. Most cancel.
   std::size_t open = 0;
   for (std::size_t first = 0; first < cut_ends_.size();) {
     CutEnd all = cut_ends_[first];
@@ -234,6 +242,9 @@ bool ChainEdges::closeCut() {
     }
   }
   cut_ends_.resize(open);
+  if (open > kMostOpen) {
+    return false;
+  }
   for (std::size_t i = 0; i < open; ++i) {
     for (std::size_t j = i + 1; j < open && cut_ends_[i].value != 0; ++j) {
       if (!link(cut_ends_[i], cut_ends_[j])) {
@@ -244,13 +255,11 @@ bool ChainEdges::closeCut() {
   return std::all_of(cut_ends_.begin(), cut_ends_.end(), [](const CutEnd& end) { return end.value == 0; });
 }
 
-// Adds a line from one end to the other, if one of their edges is a part of the other one and the lines at
-// the one lack what those at the other have too many of. False if the line's value would be too large.
+// Adds a line between two ends, if their edges are on one line, from the one at which more lines end to the
+// one at which more begin. False if the line's value would be too large.
 bool ChainEdges::link(CutEnd& p, CutEnd& q) {
-  const auto isPart = [](const CutEnd& part, const CutEnd& whole) {
-    return geometry::liesBetween(whole.a, part.a, whole.b) && geometry::liesBetween(whole.a, part.b, whole.b);
-  };
-  if (p.value == 0 || q.value == 0 || (p.value > 0) == (q.value > 0) || !(isPart(p, q) || isPart(q, p))) {
+  if (p.value == 0 || q.value == 0 || (p.value > 0) == (q.value > 0) ||
+      !geometry::areOnOneLine(p.a, p.b, q.a) || !geometry::areOnOneLine(p.a, p.b, q.b)) {
     return true;
   }
   CutEnd &from = p.value > 0 ? p : q, &to = p.value > 0 ? q : p;
@@ -318,7 +327,7 @@ void ChainEdges::divideSwept(std::size_t chain, std::uint32_t edge) {
   chains_.push_back({first, count_ - first, chains_[chain].value});
 }
 
-ChainEdges::GroupBoundary ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
+std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
   lines_.reserve(count_);
   if (several_viewers_) {
     camera_lines_.reserve(count_);
@@ -332,7 +341,10 @@ ChainEdges::GroupBoundary ChainEdges::endGroup(std::vector<BoundaryChain>& bound
   for (const Cut& cut : cuts_) {
     setLine(cut.edge, cut.from, cut.to);
   }
-  const bool closed = closeCut();
+  if (!closeCut()) {
+    forgetGroup();
+    return 0;
+  }
   if (several_viewers_) {
     divideSwept();
     findSweeps(view_, clip_depth_, camera_lines_, lines_, count_, sweeps_);
@@ -351,11 +363,8 @@ ChainEdges::GroupBoundary ChainEdges::endGroup(std::vector<BoundaryChain>& bound
       boundary.push_back({first, static_cast<std::uint32_t>(edges_.size()) - first, chain.value});
     }
   }
-  chains_.clear();
-  cuts_.clear();
-  cut_ends_.clear();
-  count_ = 0;
-  return {static_cast<std::uint32_t>(edges_.size()) - before, closed};
+  forgetGroup();
+  return static_cast<std::uint32_t>(edges_.size()) - before;
 }
 
 }  // namespace sightline::occlusion

@@ -27,12 +27,9 @@ class ChainEdges {
   // triangle beyond the plane is the surface.
   void addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value);
   // Appends the group's boundary: those of its edges that matter to the buffer, or what is left of them
-  // beyond the clip depth.
-  struct GroupBoundary {
-    std::uint32_t edges = 0;
-    bool closed = true;  // otherwise it bounds nothing: lines at the clip plane end where no other begins
-  };
-  GroupBoundary endGroup(std::vector<BoundaryChain>& boundary);
+  // beyond the clip depth. Returns their number. Appends nothing if the boundary is not closed where the clip
+  // plane cuts it, as in sets that findSurfaces() did not make.
+  std::uint32_t endGroup(std::vector<BoundaryChain>& boundary);
 
   // The edges of the groups since begin() or forget().
   std::span<const BoundaryEdge> edges() const { return edges_; }
@@ -54,6 +51,7 @@ class ChainEdges {
     std::int64_t value = 0;  // of the lines that end there, less those that begin there
   };
 
+  void forgetGroup();
   void makeRoom(std::size_t more);
   void clipAll();
   void clip(std::uint32_t edge, std::int32_t value);

@@ -19,7 +19,8 @@ constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many 
 constexpr std::uint32_t kSteadyRest = 7;
 constexpr double kTravelOfView = 1.0 / 400.0;
 
-// Sums of a sound set stay far below. One that reaches this belongs to no group that is drawn.
+// Sums of a sound set stay far below. A group with one that reaches this is drawn as runs, of which only the
+// signs count, or not at all.
 constexpr std::int32_t kMostSum = (1 << 30) + 1;
 
 // Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
@@ -272,11 +273,7 @@ void SurfaceRaster::beginGroup() {
 
 void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, SurfaceMemory::Rest& rest) {
   Group& group = groups_.back();
-  const ChainEdges::GroupBoundary made = chains_.endGroup(boundary_);
-  if (!made.closed) {
-    boundary_.resize(group.first_chain);  // it covers nothing
-  }
-  group.edges = made.edges;
+  group.edges = chains_.endGroup(boundary_);
   group.chain_count = static_cast<std::uint32_t>(boundary_.size()) - group.first_chain;
   group.depth_count = static_cast<std::uint32_t>(depths_.size()) - group.first_depth;
   group.rectangle = rectangle;

@@ -313,7 +313,8 @@ DepthBound SurfaceView::boundOf(const Plane& plane, double farthest) const {
 DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size, double farthest) const {
   const scene::PixelView& view = extents_.view();
   const double floor = view.reciprocalDepth(farthest);
-  // The margins below, a part of the value each, are more than rounding where depths are divided by.
+  // In perspective, what rounding of inSpace() makes of a depth is less than the margins below, each of which
+  // is a fraction of the value.
   const double rounding = view.orthographic ? view.depth_rounding * view.metres : 0.0;
   DepthBound bound;
   bound.floor = static_cast<float>(floor - 1e-6 * std::abs(floor) - rounding);
@@ -331,13 +332,16 @@ DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size,
   const double constant = (view.orthographic ? at_eye : n.z) * inverse;
   const double c = constant - a * view.middle_x - b * view.middle_y;
   const double range = std::abs(a) * target_.width + std::abs(b) * target_.height + std::abs(c);
+  // inSpace() may also move the plane by 2^-16 pixels.
+  const double sideways = view.depth_rounding > 0.0 ? 0x1p-16 * (std::abs(a) + std::abs(b)) : 0.0;
   if (!(range < 1e30)) {
     return bound;
   }
   // The least over the pixel's square, and less than rounding.
   bound.along_x = static_cast<float>(a);
   bound.along_y = static_cast<float>(b);
-  bound.at_origin = static_cast<float>(c + std::min(a, 0.0) + std::min(b, 0.0) - 1e-6 * range - rounding);
+  bound.at_origin =
+      static_cast<float>(c + std::min(a, 0.0) + std::min(b, 0.0) - 1e-6 * range - rounding - sideways);
   return bound;
 }
 

@@ -11,13 +11,9 @@ namespace {
 
 // Sets that keep this share of the scene's triangles, in the mean over space and over cells, are of no use.
 constexpr double kKeepsAll = 0.9;
-// Where single convex occluders leave this share, surfaces are worth their time.
+// Where single convex occluders leave this share, more may be hidden in more time.
 constexpr double kKeepsMost = 0.7;
 constexpr double kMaxOfSpace = 0.5;
-
-constexpr const char* kAloneHideLittle =
-    "single convex occluders hide little here: the scene is open, or its walls are of many small pieces, "
-    "which --occlusion fused lets hide together";
 
 double shareOf(const SightFacts& facts, StopReason reason) {
   return facts.reason_volumes[static_cast<std::size_t>(reason)];
@@ -75,7 +71,8 @@ std::string reasonFor(const SightFile& file, const SightFacts& facts) {
         edge, record.max_depth);
   }
   if (!occluders || occluders->alone) {
-    return kAloneHideLittle;
+    return "single convex occluders hide little here: the scene is open, or its walls are of many small "
+           "pieces, which --occlusion fused lets hide together";
   }
   return "surfaces hide little here: the scene is open, or whole rooms lie in one cell";
 }
@@ -92,7 +89,10 @@ std::string bakeWarning(const SightFile& file, const SightFacts& facts) {
   }
   const std::optional<OccluderFacts> occluders = occludersOf(file.record());
   if (in_space > kKeepsMost && in_cells > kKeepsMost && occluders && occluders->alone) {
-    return fmt::format("the sets keep {:.0f} % of the triangles; {}", 100.0 * in_space, kAloneHideLittle);
+    return fmt::format(
+        "the sets keep {:.0f} % of the triangles; --occlusion fused lets walls of many small pieces hide "
+        "together, and a greater --depth makes smaller cells",
+        100.0 * in_space);
   }
   return {};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Warns if baked sets hide next to nothing, and says why.
+// Warns if baked sets hide next to nothing, and says why; and if those of single occluders hide little.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace sightline::tool {
 
-// One line for the user, without the file's name; empty if the sets are of use.
+// One line for the user, without the file's name; empty if the sets hide enough.
 std::string bakeWarning(const SightFile& file, const SightFacts& facts);
 
 }  // namespace sightline::tool

@@ -486,7 +486,7 @@ std::string uselessBecause(const Option& option, const std::vector<Setting>& set
     return hasOption(*setting.method, option.name);
   });
   if (!option.of_methods || is_in_use) {
-    return "no method in use has it";
+    return "it has no meaning beside the other options";
   }
   std::string methods;
   for (const Method& method : allMethods()) {
