@@ -13,18 +13,25 @@ using namespace world;
 namespace world {
 namespace {
 
-// Whether a box of a world is that of a baked scene, up to what rounding may have made of it.
-bool sameBox(const Box& now, const Box& baked, const Vec3d& baked_from_now) {
-  if (!now.wellFormed() || !baked.wellFormed()) {
-    return false;
-  }
+// Whether the box of an instance, in the space of a baked scene, is the baked one, up to what rounding may
+// have made of it. Each axis is compared by the terms of its own coordinate, which do not depend on the
+// world.
+bool standsWhereBaked(const MeshExtent& extent, const Mat4& baked_from_mesh, const Box& baked) {
   constexpr double kRounding = 0x1p-20;
-  const auto size = [](const Box& box) {
-    return maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
-  };
-  const double allowed = kRounding * (size(now) + size(baked));
-  return maxComponent(abs(Vec3d(now.min) + baked_from_now - Vec3d(baked.min))) <= allowed &&
-         maxComponent(abs(Vec3d(now.max) + baked_from_now - Vec3d(baked.max))) <= allowed;
+  for (int row = 0; row < 3; ++row) {
+    double at = baked_from_mesh(row, 3), reach = 0.0, terms = std::abs(at);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double factor = baked_from_mesh(row, axis);
+      at += factor * extent.middle[axis];
+      reach += std::abs(factor) * extent.half[axis];
+      terms += std::abs(factor) * extent.farthest[axis];
+    }
+    const auto near = [&](double now, double then) { return std::abs(now - then) <= kRounding * terms; };
+    if (!near(at - reach, baked.min[row]) || !near(at + reach, baked.max[row])) {  // so if one is not finite
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -57,9 +64,11 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
     }
     for (const ObjectId object : boxes.objectsBelow(node)) {
       const InstanceId id = object.value < objects.size() ? objects[object.value] : InstanceId();
-      const bool same = has(id) && own.instances[id.value].shown && own.instances[id.value].occludes &&
-                        own.instances[id.value].displacement == 0.0f &&
-                        sameBox(own.boundsOf(id.value), boxes.nodes[node].bounds, own.origin - baked_origin);
+      const bool same =
+          has(id) && own.hasBox(id.value) && own.instances[id.value].occludes &&
+          own.instances[id.value].displacement == 0.0f &&
+          standsWhereBaked(own.meshes[own.instances[id.value].mesh].extent,
+                           relativeTo(baked_origin, own.world_from_mesh[id.value]), boxes.nodes[node].bounds);
       if (!same) {
         own.sets[number].tombstones.push_back(object);
         continue;

@@ -195,5 +195,59 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
   }
 }
 
+// What a wall 6 m wide hides, as if it had been baked so.
+struct WallBeforeCrate {
+  std::vector<Box> boxes{{{-3, -3, -11}, {3, 3, -10}}, {{-0.5f, -0.5f, -15}, {0.5f, 0.5f, -14}}};
+  fake_sets::FakeSets sets{boxes};
+  World world;
+  std::vector<InstanceId> ids;  // by ObjectId: the wall, the crate
+
+  explicit WallBeforeCrate(const Instance& wall, const Shape& shape = boxShape()) {
+    sets.use(1, {true, false});
+    Instance given = wall;
+    given.mesh = addShape(world, shape);
+    ids.push_back(world.add(given));
+    ids.push_back(world.add(
+        {.mesh = addShape(world, boxShape()), .world_from_mesh = boxAt({-0.5, -0.5, -15}, {1, 1, 1})}));
+  }
+  static Mat4 wallMovedBy(double aside) { return boxAt({-3.0 + aside, -3, -11}, {6, 6, 1}); }
+  static bool showsCrate(WorldCuller& culler, const World& world, const std::vector<InstanceId>& ids) {
+    culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
+    return culler.isVisible(ids[1]);
+  }
+};
+
+// How far a cell of the world lies from where the world's boxes are relative to says nothing about it.
+TEST(WorldSets, WhatWasMovedIsATombstoneHoweverFarFromTheOriginTheBakedSceneLies) {
+  for (const double base : {0.0, 1e4, 1e7}) {
+    for (const double aside : {0.0, 0x1p-10, 2.0}) {
+      const Vec3d to(base, 0, 0);
+      WallBeforeCrate scene({.world_from_mesh = movedBy(WallBeforeCrate::wallMovedBy(aside), to)});
+      scene.world.setTransform(scene.ids[1], movedBy(boxAt({-0.5, -0.5, -15}, {1, 1, 1}), to));
+      const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes(), to);
+      EXPECT_EQ(scene.world.tombstones(id), aside == 0.0 ? 0u : 1u) << base << " " << aside;
+      WorldCuller culler({.occlusion = false});
+      culler.useSets(id, &scene.sets);
+      culler.cull(scene.world, viewFrom(to, {0, 0, -1}));
+      EXPECT_EQ(culler.isVisible(scene.ids[1]), aside != 0.0) << base << " " << aside;
+    }
+  }
+}
+
+// A kilometre from the baked scene's origin, along x alone: rounding is larger along x alone.
+TEST(WorldSets, WhatWasMovedByMoreThanRoundingAlongAnyAxisIsATombstone) {
+  const std::vector<Box> boxes{{{1000, 0, 0}, {1004, 3, 0.25f}}};
+  const fake_sets::FakeSets sets(boxes);
+  for (const auto& [by, moved] :
+       {std::pair(Vec3d(0x1p-12, 0, 0), false), std::pair(Vec3d(0x1p-9, 0, 0), true),
+        std::pair(Vec3d(0, 0x1p-12, 0), true), std::pair(Vec3d(0, 0, 0x1p-12), true),
+        std::pair(Vec3d(0, 0x1p-23, 0), false)}) {
+    World world;
+    const InstanceId ids[] = {world.add({.mesh = addShape(world, boxShape()),
+                                         .world_from_mesh = movedBy(boxAt({1000, 0, 0}, {4, 3, 0.25}), by)})};
+    EXPECT_EQ(world.tombstones(world.useSets(ids, sets.boxes())), moved ? 1u : 0u) << by.x << " " << by.y;
+  }
+}
+
 }  // namespace
 }  // namespace sightline
