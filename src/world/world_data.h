@@ -43,10 +43,14 @@ struct BakedObjects {
   bool there = false;
   std::vector<InstanceId> instances{};  // by ObjectId; not valid for tombstones
   std::vector<ObjectId> tombstones{};
+  std::uint64_t boxes = 0;    // hashOfBoxes()
   Vec3d origin;               // world space
   std::uint32_t groups = 0;   // that all of them have
   std::uint64_t version = 0;  // of the last change
 };
+
+// The same for equal boxes of the same objects, in whatever tree they are.
+std::uint64_t hashOfBoxes(const BoxTreeView& boxes);
 
 enum class Whereabouts : std::uint8_t {
   kNowhere,    // not there, or hidden

@@ -1,9 +1,11 @@
 // Instances that a baked scene knows as its objects.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sightline/world/world.h"
+#include "src/base/hash_slots.h"
 #include "src/world/world_data.h"
 
 namespace sightline {
@@ -36,6 +38,26 @@ bool standsWhereBaked(const MeshExtent& extent, const Mat4& baked_from_mesh, con
 
 }  // namespace
 
+std::uint64_t hashOfBoxes(const BoxTreeView& boxes) {
+  std::uint64_t sum = boxes.objects.size();
+  for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
+    if (!boxes.leaf(node)) {
+      continue;
+    }
+    const Box& box = boxes.nodes[node].bounds;
+    for (const ObjectId object : boxes.objectsBelow(node)) {
+      std::uint64_t hash = object.value;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::uint64_t min = std::bit_cast<std::uint32_t>(box.min[axis]),
+                            max = std::bit_cast<std::uint32_t>(box.max[axis]);
+        hash = base::mixBits(hash ^ (min << 32 | max));
+      }
+      sum += hash;
+    }
+  }
+  return sum;
+}
+
 // Makes an instance a tombstone of the sets that it belongs to.
 void WorldData::leaveSets(std::uint32_t id) {
   if (!instances[id].baked) {
@@ -56,7 +78,8 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
   // A number is never used again: a culler may not have been told that its sets were dropped.
   const auto number = static_cast<std::uint32_t>(own.sets.size());
   own.sets.emplace_back();
-  own.sets[number] = {.there = true, .origin = baked_origin, .groups = 0xffffffffu};
+  own.sets[number] = {
+      .there = true, .boxes = hashOfBoxes(boxes), .origin = baked_origin, .groups = 0xffffffffu};
   own.sets[number].instances.resize(boxes.objects.size());
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
     if (!boxes.leaf(node)) {

@@ -249,5 +249,24 @@ TEST(WorldSets, WhatWasMovedByMoreThanRoundingAlongAnyAxisIsATombstone) {
   }
 }
 
+// The culler's sets are of as many objects as the world was told of.
+TEST(WorldSets, OfOtherBoxesOrInAnotherOrderLeaveNothingOut) {
+  WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
+  const std::vector<Box> as_it_is{{{17, -3, -11}, {23, 3, -10}}, scene.boxes[1]};
+  fake_sets::FakeSets right(as_it_is), exchanged(std::vector{as_it_is[1], as_it_is[0]});
+  const SetsId id = scene.world.useSets(scene.ids, right.boxes());
+  EXPECT_EQ(scene.world.tombstones(id), 0u);
+  exchanged.use(1, {true, false});
+  WorldCuller culler({.occlusion = false});
+  for (fake_sets::FakeSets* const other : {&scene.sets, &exchanged}) {
+    culler.useSets(id, other);
+    EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+    EXPECT_EQ(other->finds, 0u);
+  }
+  right.use(1, {true, false});
+  culler.useSets(id, &right);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+}
+
 }  // namespace
 }  // namespace sightline

@@ -77,6 +77,8 @@ class WorldCuller {
   void setClipPlane(const Plane& plane);
   // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use, at
   // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
+  // Sets of other boxes than World::useSets() was given leave nothing out; finding that takes time as the
+  // number of boxes, in this call.
   void useSets(SetsId id, VisibleSets* sets);
 
   // Answers of the last cull(). Spans, and depthBuffer(), are valid until the next cull() or reset(), or
