@@ -268,5 +268,21 @@ TEST(WorldSets, OfOtherBoxesOrInAnotherOrderLeaveNothingOut) {
   EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
 }
 
+// Each world counts its sets from 0, and reset() keeps those that the culler was told to use.
+TEST(WorldSets, OfOneWorldSayNothingAboutAnotherOne) {
+  WallBeforeCrate hidden({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)}),
+      seen({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
+  const fake_sets::FakeSets of_seen(std::vector<Box>{{{17, -3, -11}, {23, 3, -10}}, seen.boxes[1]});
+  const SetsId id = hidden.world.useSets(hidden.ids, hidden.sets.boxes());
+  EXPECT_EQ(seen.world.useSets(seen.ids, of_seen.boxes()), id);
+  WorldCuller culler({.occlusion = false});
+  culler.useSets(id, &hidden.sets);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
+  culler.reset();
+  EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, seen.world, seen.ids));
+  culler.reset();
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
+}
+
 }  // namespace
 }  // namespace sightline

@@ -69,6 +69,8 @@ class WorldCuller {
   // Several views at once, as those of two eyes: what any of them may see. The same number of views in the
   // same order in each frame is best.
   void cull(const World& world, std::span<const View> views);
+  // Forgets all frames. The clip plane and the sets stay in use; in another world, sets leave something out
+  // only if there, too, the same SetsId stands for their boxes.
   void reset();
 
   // For views with an oblique near plane or a user clip plane, as those of a mirror: nothing on the negative
