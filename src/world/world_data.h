@@ -103,6 +103,12 @@ struct WorldData {
            !meshes[own.mesh].mesh.surfaces.parts.empty();
   }
 
+  // Whether nothing says that an instance that was baked as an occluder hides nothing any more.
+  bool mayBeBaked(std::uint32_t id) const {
+    const InstanceData& own = instances[id];
+    return hasBox(id) && own.occludes && own.displacement == 0.0f && meshes[own.mesh].mesh.occludes;
+  }
+
   // Whether the instance is shown and has a box.
   bool hasBox(std::uint32_t id) const {
     return instances[id].where == Whereabouts::kSettled || instances[id].where == Whereabouts::kMoving;

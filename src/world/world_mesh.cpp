@@ -37,6 +37,7 @@ Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
   if (!drawn->finite) {
     made.bounds = Box{};
   }
+  made.occludes = settings.occludes;
   if (!settings.occludes || settings.opacity != Opacity::kOpaque) {
     return made;
   }

@@ -87,12 +87,10 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
     }
     for (const ObjectId object : boxes.objectsBelow(node)) {
       const InstanceId id = object.value < objects.size() ? objects[object.value] : InstanceId();
-      const bool same =
-          has(id) && own.hasBox(id.value) && own.instances[id.value].occludes &&
-          own.instances[id.value].displacement == 0.0f &&
-          standsWhereBaked(own.meshes[own.instances[id.value].mesh].extent,
-                           relativeTo(baked_origin, own.world_from_mesh[id.value]), boxes.nodes[node].bounds);
-      if (!same) {
+      if (!has(id) || !own.mayBeBaked(id.value) ||
+          !standsWhereBaked(own.meshes[own.instances[id.value].mesh].extent,
+                            relativeTo(baked_origin, own.world_from_mesh[id.value]),
+                            boxes.nodes[node].bounds)) {
         own.sets[number].tombstones.push_back(object);
         continue;
       }

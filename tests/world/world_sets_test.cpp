@@ -284,5 +284,21 @@ TEST(WorldSets, OfOneWorldSayNothingAboutAnotherOne) {
   EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
 }
 
+TEST(WorldSets, WhatIsSaidToHideNothingIsATombstoneWhereverThatIsSaid) {
+  for (int how = 0; how < 4; ++how) {
+    Shape shape = boxShape();
+    shape.settings.occludes = how != 1;
+    WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0),
+                           .occludes = how != 2,
+                           .displacement = how == 3 ? 0.5 : 0.0},
+                          shape);
+    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    EXPECT_EQ(scene.world.tombstones(id), how == 0 ? 0u : 1u) << how;
+    WorldCuller culler({.occlusion = false});
+    culler.useSets(id, &scene.sets);
+    EXPECT_EQ(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids), how != 0) << how;
+  }
+}
+
 }  // namespace
 }  // namespace sightline

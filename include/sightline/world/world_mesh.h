@@ -52,6 +52,7 @@ struct WorldMesh {
   SurfaceSet surfaces{};        // empty if the mesh never hides anything
   std::uint32_t triangles = 0;  // of the drawn mesh
   bool has_occluder = false;    // MeshSettings::occluder was given
+  bool occludes = true;         // MeshSettings::occludes
   // How many vertices the triangles of the mesh that hides name, and how many different positions these have.
   // Where both are equal and open_edges are many, positions that should be equal are not: it hides little.
   std::uint32_t vertices = 0, positions = 0;
