@@ -101,7 +101,8 @@ class WorldCuller {
   DepthBufferView depthBuffer() const;  // of the first view
 
   // Whether a box of something that is no instance may be seen in one of the views: kHidden also means
-  // outside of them. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
+  // outside of them. Every box may be seen before the first cull(), after reset(), and in a view that is not
+  // usable. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
   // Several threads may ask at the same time.
   Visibility classify(const Box& box_from_origin) const;
 
