@@ -125,8 +125,9 @@ struct WorldData {
   std::vector<InstanceExtra> extras;
   std::vector<Mat4> world_from_mesh;
   std::vector<std::uint32_t> free_instances;
-  std::size_t count = 0;      // instances that are there
-  std::uint64_t version = 0;  // grows with each change
+  std::size_t count = 0;        // instances that are there
+  std::size_t in_no_group = 0;  // of these, with no bit of InstanceData::groups
+  std::uint64_t version = 0;    // grows with each change
   std::vector<Joined> joins;
   std::vector<std::uint32_t> free_joins;
   std::vector<BakedObjects> sets;
