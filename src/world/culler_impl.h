@@ -21,6 +21,7 @@ struct WorldCuller::Impl {
   WorldCullerSettings settings;
   std::vector<world::WorldEye> eyes;  // at least one; more than there are views after a cull() of more
   std::vector<View> views;            // usable ones
+  bool has_culled = false;
   WorldCullStats counts;
   world::IdBits kept, last_kept;
   std::vector<InstanceId> visible, appeared, disappeared;

@@ -7,7 +7,7 @@ namespace sightline::world {
 void EyeSets::use(SetsId id, VisibleSets* sets) {
   std::erase_if(used_, [&](const Used& used) { return used.id == id; });
   if (sets != nullptr) {
-    used_.push_back({.id = id, .sets = sets, .marks = {}});
+    used_.push_back({.id = id, .sets = sets, .boxes = hashOfBoxes(sets->boxes()), .marks = {}});
   }
 }
 
@@ -30,9 +30,9 @@ void EyeSets::find(const WorldData& data, const View& view, std::uint32_t groups
     const bool there = used.id.value < data.sets.size() && data.sets[used.id.value].there;
     const BakedObjects* const baked = there ? &data.sets[used.id.value] : nullptr;
     // Sets hold for viewpoints, and the rays of an orthographic view do not start at its eye. They take all
-    // objects to be drawn, and are of no use if they are of another scene.
+    // objects to be drawn, and are of no use if they are of other boxes.
     if (baked == nullptr || view.orthographic || (baked->groups & groups) == 0 ||
-        used.sets->boxes().objects.size() != baked->instances.size()) {
+        used.boxes != baked->boxes) {
       used.everything = true;
       used.set = VisibleSet::kEverything;
       continue;

@@ -25,6 +25,7 @@ class EyeSets {
   struct Used {
     SetsId id;
     VisibleSets* sets = nullptr;
+    std::uint64_t boxes = 0;    // hashOfBoxes() of the sets
     std::uint64_t version = 0;  // of the world's sets, when it was marked
     std::uint32_t set = VisibleSet::kEverything;
     bool everything = true;

@@ -54,8 +54,8 @@ Box boxOf(const WorldData& data, InstanceId id) {
 struct Light {
   bool directional = false;
   Vec3d at;            // a point light
-  Vec3d direction;     // unit length
-  double reach = 0.0;  // metres: how long shadows are
+  Vec3d direction;     // of rays, one metre deep in the map
+  double reach = 0.0;  // metres: how deep shadows are
 };
 
 double farthestAlong(const Vec3d& normal, const Box& box) {
@@ -169,7 +169,8 @@ bool ShadowCasters::Impl::isBeforeSomething(const PixelBox& image) const {
 
 void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, const scene::PixelView& map,
                                  std::span<const View> views) {
-  const Light from{light_view.orthographic, light_view.eye - data.origin, light_view.forward,
+  // What has the same place in the map lies along unit_z, which is not quite forward where the axes are off.
+  const Light from{light_view.orthographic, light_view.eye - data.origin, map.unit_z,
                    light_view.z_far - light_view.z_near};
   frusta.clear();
   for (const View& view : views) {

@@ -199,6 +199,7 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
     meshes[own.mesh].instances.emplace_back(id);
   }
   ++count;
+  in_no_group += own.groups == 0 ? 1 : 0;
   return id;
 }
 
@@ -350,6 +351,7 @@ void World::remove(InstanceId instance) {
     of_mesh[place] = of_mesh.back();
     of_mesh.pop_back();
   }
+  own.in_no_group -= gone.groups == 0 ? 1 : 0;
   gone = {.listed = gone.listed};
   gone.version = ++own.version;
   own.free_instances.push_back(id);
@@ -424,6 +426,8 @@ void World::setGroups(InstanceId instance, std::uint32_t groups) {
     return;
   }
   InstanceData& changed = own.instances[instance.value];
+  own.in_no_group += groups == 0 ? 1 : 0;
+  own.in_no_group -= changed.groups == 0 ? 1 : 0;
   changed.groups = groups;
   changed.version = ++own.version;
   own.leaveJoin(instance.value);

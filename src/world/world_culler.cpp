@@ -45,6 +45,7 @@ void WorldCuller::Impl::keepEverything(const WorldData& data) {
 }
 
 void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given) {
+  has_culled = true;
   counts = {};
   std::swap(kept, last_kept);
   kept.clear(data.instances.size());
@@ -134,7 +135,7 @@ DepthBufferView WorldCuller::depthBuffer() const {
 }
 
 Visibility WorldCuller::classify(const Box& box_from_origin) const {
-  if (impl_->counts.view_fault != nullptr) {
+  if (!impl_->has_culled || impl_->counts.view_fault != nullptr) {
     return Visibility::kPartial;
   }
   Visibility best = Visibility::kHidden;

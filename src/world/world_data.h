@@ -43,10 +43,14 @@ struct BakedObjects {
   bool there = false;
   std::vector<InstanceId> instances{};  // by ObjectId; not valid for tombstones
   std::vector<ObjectId> tombstones{};
+  std::uint64_t boxes = 0;    // hashOfBoxes()
   Vec3d origin;               // world space
   std::uint32_t groups = 0;   // that all of them have
   std::uint64_t version = 0;  // of the last change
 };
+
+// The same for equal boxes of the same objects, in whatever tree they are.
+std::uint64_t hashOfBoxes(const BoxTreeView& boxes);
 
 enum class Whereabouts : std::uint8_t {
   kNowhere,    // not there, or hidden
@@ -99,6 +103,12 @@ struct WorldData {
            !meshes[own.mesh].mesh.surfaces.parts.empty();
   }
 
+  // Whether nothing says that an instance that was baked as an occluder hides nothing any more.
+  bool mayBeBaked(std::uint32_t id) const {
+    const InstanceData& own = instances[id];
+    return hasBox(id) && own.occludes && own.displacement == 0.0f && meshes[own.mesh].mesh.occludes;
+  }
+
   // Whether the instance is shown and has a box.
   bool hasBox(std::uint32_t id) const {
     return instances[id].where == Whereabouts::kSettled || instances[id].where == Whereabouts::kMoving;
@@ -115,8 +125,9 @@ struct WorldData {
   std::vector<InstanceExtra> extras;
   std::vector<Mat4> world_from_mesh;
   std::vector<std::uint32_t> free_instances;
-  std::size_t count = 0;      // instances that are there
-  std::uint64_t version = 0;  // grows with each change
+  std::size_t count = 0;        // instances that are there
+  std::size_t in_no_group = 0;  // of these, with no bit of InstanceData::groups
+  std::uint64_t version = 0;    // grows with each change
   std::vector<Joined> joins;
   std::vector<std::uint32_t> free_joins;
   std::vector<BakedObjects> sets;

@@ -158,7 +158,7 @@ void WorldEye::test(const WorldData& data, bool view_only) {
   found_.clear(data.instances.size());
   test(data.settled, view_only);
   test(data.moving, view_only);
-  if (settings_.groups != 0xffffffffu || !(clip_ == Plane())) {
+  if (settings_.groups != 0xffffffffu || data.in_no_group > 0 || !(clip_ == Plane())) {
     found_.removeIf([&](std::uint32_t id) {
       const InstanceData& own = data.instances[id];
       return !isDrawn(own) || sideOf(clip_, data.boxOf(id), clip_rounding_) < 0;

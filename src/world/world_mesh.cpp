@@ -1,5 +1,7 @@
 #include "sightline/world/world_mesh.h"
 
+#include <cmath>
+
 #include "sightline/scene/scene.h"
 #include "src/world/read_mesh.h"
 
@@ -20,6 +22,15 @@ double volumeOf(const WeldedMesh& mesh) {
   return six_volumes / 6.0;
 }
 
+// min() and max() pass over a number that is not one, so that a box would not grow by it.
+bool hasNaN(const Box& box) {
+  bool found = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    found = found || std::isnan(box.min[axis]) || std::isnan(box.max[axis]);
+  }
+  return found;
+}
+
 }  // namespace
 
 Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
@@ -34,9 +45,10 @@ Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
     made.bounds.extend(drawn->positions[vertex]);
   }
   made.bounds.extend(settings.drawn_bounds);
-  if (!drawn->finite) {
+  if (!drawn->finite || hasNaN(settings.drawn_bounds)) {
     made.bounds = Box{};
   }
+  made.occludes = settings.occludes;
   if (!settings.occludes || settings.opacity != Opacity::kOpaque) {
     return made;
   }

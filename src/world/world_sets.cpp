@@ -1,9 +1,11 @@
 // Instances that a baked scene knows as its objects.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sightline/world/world.h"
+#include "src/base/hash_slots.h"
 #include "src/world/world_data.h"
 
 namespace sightline {
@@ -13,21 +15,48 @@ using namespace world;
 namespace world {
 namespace {
 
-// Whether a box of a world is that of a baked scene, up to what rounding may have made of it.
-bool sameBox(const Box& now, const Box& baked, const Vec3d& baked_from_now) {
-  if (!now.wellFormed() || !baked.wellFormed()) {
-    return false;
-  }
+// Whether the box of an instance, in the space of a baked scene, is the baked one, up to what rounding may
+// have made of it. Each axis is compared by the terms of its own coordinate, which do not depend on the
+// world.
+bool standsWhereBaked(const MeshExtent& extent, const Mat4& baked_from_mesh, const Box& baked) {
   constexpr double kRounding = 0x1p-20;
-  const auto size = [](const Box& box) {
-    return maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
-  };
-  const double allowed = kRounding * (size(now) + size(baked));
-  return maxComponent(abs(Vec3d(now.min) + baked_from_now - Vec3d(baked.min))) <= allowed &&
-         maxComponent(abs(Vec3d(now.max) + baked_from_now - Vec3d(baked.max))) <= allowed;
+  for (int row = 0; row < 3; ++row) {
+    double at = baked_from_mesh(row, 3), reach = 0.0, terms = std::abs(at);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double factor = baked_from_mesh(row, axis);
+      at += factor * extent.middle[axis];
+      reach += std::abs(factor) * extent.half[axis];
+      terms += std::abs(factor) * extent.farthest[axis];
+    }
+    const auto near = [&](double now, double then) { return std::abs(now - then) <= kRounding * terms; };
+    if (!near(at - reach, baked.min[row]) || !near(at + reach, baked.max[row])) {  // so if one is not finite
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
+
+std::uint64_t hashOfBoxes(const BoxTreeView& boxes) {
+  std::uint64_t sum = boxes.objects.size();
+  for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
+    if (!boxes.leaf(node)) {
+      continue;
+    }
+    const Box& box = boxes.nodes[node].bounds;
+    for (const ObjectId object : boxes.objectsBelow(node)) {
+      std::uint64_t hash = object.value;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::uint64_t min = std::bit_cast<std::uint32_t>(box.min[axis]),
+                            max = std::bit_cast<std::uint32_t>(box.max[axis]);
+        hash = base::mixBits(hash ^ (min << 32 | max));
+      }
+      sum += hash;
+    }
+  }
+  return sum;
+}
 
 // Makes an instance a tombstone of the sets that it belongs to.
 void WorldData::leaveSets(std::uint32_t id) {
@@ -49,7 +78,8 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
   // A number is never used again: a culler may not have been told that its sets were dropped.
   const auto number = static_cast<std::uint32_t>(own.sets.size());
   own.sets.emplace_back();
-  own.sets[number] = {.there = true, .origin = baked_origin, .groups = 0xffffffffu};
+  own.sets[number] = {
+      .there = true, .boxes = hashOfBoxes(boxes), .origin = baked_origin, .groups = 0xffffffffu};
   own.sets[number].instances.resize(boxes.objects.size());
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
     if (!boxes.leaf(node)) {
@@ -57,10 +87,10 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
     }
     for (const ObjectId object : boxes.objectsBelow(node)) {
       const InstanceId id = object.value < objects.size() ? objects[object.value] : InstanceId();
-      const bool same = has(id) && own.instances[id.value].shown && own.instances[id.value].occludes &&
-                        own.instances[id.value].displacement == 0.0f &&
-                        sameBox(own.boundsOf(id.value), boxes.nodes[node].bounds, own.origin - baked_origin);
-      if (!same) {
+      if (!has(id) || !own.mayBeBaked(id.value) ||
+          !standsWhereBaked(own.meshes[own.instances[id.value].mesh].extent,
+                            relativeTo(baked_origin, own.world_from_mesh[id.value]),
+                            boxes.nodes[node].bounds)) {
         own.sets[number].tombstones.push_back(object);
         continue;
       }

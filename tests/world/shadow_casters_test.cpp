@@ -163,5 +163,35 @@ TEST(ShadowCasters, AFaultyViewOrLightKeepsWhatTheOtherSees) {
   EXPECT_TRUE(casters.casters().empty());
 }
 
+// The light's axes are off by what validate() allows, so its rays are not quite along `forward`: nine
+// kilometres below, the shadow of a crate 4 mm beside the view reaches 4 mm into it.
+TEST(ShadowCasters, RaysOfTheSunAreThoseOfItsMap) {
+  Story story(allShapes());
+  const InstanceId ground = story.add(0, boxAt({-10, -9001, -5}, {20, 1, 10})),
+                   crate = story.add(0, boxAt({0.004, -1, -1}, {1, 1, 2}));
+  View view = viewFrom({-5, -9000, 50}, {0, 0, -1});
+  view.orthographic = true;
+  view.ortho_height = 20.0;
+  view.aspect = 0.5;  // x from -10 to 0
+  view.z_near = 1.0;
+  view.z_far = 100.0;
+  View light = lightFrom({0, 10, 0}, {0, -1, 0}, true);
+  light.ortho_height = 100.0;
+  light.z_near = 1.0;
+  light.z_far = 9100.0;
+  for (const double skew : {0.0, 9e-7}) {
+    light.right = {1, -skew, 0};
+    light.up = {0, 0, -1};
+    ASSERT_TRUE(validate(light));
+    WorldCuller culler;
+    ShadowCasters casters;
+    culler.cull(story.world, view);
+    casters.cull(story.world, light, culler);
+    EXPECT_TRUE(keeps(culler, ground));
+    const bool casts = std::ranges::binary_search(casters.casters(), crate);
+    EXPECT_EQ(casts, skew != 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace sightline

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "tests/world/world_story.h"
@@ -120,6 +121,23 @@ TEST(WorldMesh, AnotherMeshHidesInItsPlace) {
   MeshView broken = hides;
   broken.position_stride = 1;
   EXPECT_FALSE(makeMesh(viewOf(drawn), {.occluder = &broken}));
+}
+
+// A number of the drawn bounds that is not one says nothing about how far that side reaches.
+TEST(WorldMesh, WithDrawnBoundsThatAreNotNumbersItIsAlwaysKept) {
+  const std::vector<Vec3f> drawn = boxFrom({0, 0, 0}, {1, 1, 1});
+  for (int side = 0; side < 6; ++side) {
+    Box bounds{{-10, -10, -10}, {10, 10, 10}};
+    (side < 3 ? bounds.min : bounds.max)[side % 3] = std::numeric_limits<float>::quiet_NaN();
+    const WorldMesh mesh = *makeMesh(viewOf(drawn), {.drawn_bounds = bounds});
+    EXPECT_FALSE(mesh.bounds.wellFormed()) << side;
+    World world;
+    const InstanceId id = world.add({.mesh = world.addMesh(mesh)});
+    WorldCuller culler;
+    // Nothing of the triangles is in this view.
+    culler.cull(world, viewFrom({0, 0, -2}, {0, 0, -1}));
+    EXPECT_TRUE(culler.isVisible(id)) << side;
+  }
 }
 
 TEST(WorldMesh, WhatTouchesOrCrossesTheDrawnMeshIsNotInside) {

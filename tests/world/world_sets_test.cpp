@@ -195,5 +195,110 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
   }
 }
 
+// What a wall 6 m wide hides, as if it had been baked so.
+struct WallBeforeCrate {
+  std::vector<Box> boxes{{{-3, -3, -11}, {3, 3, -10}}, {{-0.5f, -0.5f, -15}, {0.5f, 0.5f, -14}}};
+  fake_sets::FakeSets sets{boxes};
+  World world;
+  std::vector<InstanceId> ids;  // by ObjectId: the wall, the crate
+
+  explicit WallBeforeCrate(const Instance& wall, const Shape& shape = boxShape()) {
+    sets.use(1, {true, false});
+    Instance given = wall;
+    given.mesh = addShape(world, shape);
+    ids.push_back(world.add(given));
+    ids.push_back(world.add(
+        {.mesh = addShape(world, boxShape()), .world_from_mesh = boxAt({-0.5, -0.5, -15}, {1, 1, 1})}));
+  }
+  static Mat4 wallMovedBy(double aside) { return boxAt({-3.0 + aside, -3, -11}, {6, 6, 1}); }
+  static bool showsCrate(WorldCuller& culler, const World& world, const std::vector<InstanceId>& ids) {
+    culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
+    return culler.isVisible(ids[1]);
+  }
+};
+
+// How far a cell of the world lies from where the world's boxes are relative to says nothing about it.
+TEST(WorldSets, WhatWasMovedIsATombstoneHoweverFarFromTheOriginTheBakedSceneLies) {
+  for (const double base : {0.0, 1e4, 1e7}) {
+    for (const double aside : {0.0, 0x1p-10, 2.0}) {
+      const Vec3d to(base, 0, 0);
+      WallBeforeCrate scene({.world_from_mesh = movedBy(WallBeforeCrate::wallMovedBy(aside), to)});
+      scene.world.setTransform(scene.ids[1], movedBy(boxAt({-0.5, -0.5, -15}, {1, 1, 1}), to));
+      const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes(), to);
+      EXPECT_EQ(scene.world.tombstones(id), aside == 0.0 ? 0u : 1u) << base << " " << aside;
+      WorldCuller culler({.occlusion = false});
+      culler.useSets(id, &scene.sets);
+      culler.cull(scene.world, viewFrom(to, {0, 0, -1}));
+      EXPECT_EQ(culler.isVisible(scene.ids[1]), aside != 0.0) << base << " " << aside;
+    }
+  }
+}
+
+// A kilometre from the baked scene's origin, along x alone: rounding is larger along x alone.
+TEST(WorldSets, WhatWasMovedByMoreThanRoundingAlongAnyAxisIsATombstone) {
+  const std::vector<Box> boxes{{{1000, 0, 0}, {1004, 3, 0.25f}}};
+  const fake_sets::FakeSets sets(boxes);
+  for (const auto& [by, moved] :
+       {std::pair(Vec3d(0x1p-12, 0, 0), false), std::pair(Vec3d(0x1p-9, 0, 0), true),
+        std::pair(Vec3d(0, 0x1p-12, 0), true), std::pair(Vec3d(0, 0, 0x1p-12), true),
+        std::pair(Vec3d(0, 0x1p-23, 0), false)}) {
+    World world;
+    const InstanceId ids[] = {world.add({.mesh = addShape(world, boxShape()),
+                                         .world_from_mesh = movedBy(boxAt({1000, 0, 0}, {4, 3, 0.25}), by)})};
+    EXPECT_EQ(world.tombstones(world.useSets(ids, sets.boxes())), moved ? 1u : 0u) << by.x << " " << by.y;
+  }
+}
+
+// The culler's sets are of as many objects as the world was told of.
+TEST(WorldSets, OfOtherBoxesOrInAnotherOrderLeaveNothingOut) {
+  WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
+  const std::vector<Box> as_it_is{{{17, -3, -11}, {23, 3, -10}}, scene.boxes[1]};
+  fake_sets::FakeSets right(as_it_is), exchanged(std::vector{as_it_is[1], as_it_is[0]});
+  const SetsId id = scene.world.useSets(scene.ids, right.boxes());
+  EXPECT_EQ(scene.world.tombstones(id), 0u);
+  exchanged.use(1, {true, false});
+  WorldCuller culler({.occlusion = false});
+  for (fake_sets::FakeSets* const other : {&scene.sets, &exchanged}) {
+    culler.useSets(id, other);
+    EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+    EXPECT_EQ(other->finds, 0u);
+  }
+  right.use(1, {true, false});
+  culler.useSets(id, &right);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+}
+
+// Each world counts its sets from 0, and reset() keeps those that the culler was told to use.
+TEST(WorldSets, OfOneWorldSayNothingAboutAnotherOne) {
+  WallBeforeCrate hidden({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)}),
+      seen({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
+  const fake_sets::FakeSets of_seen(std::vector<Box>{{{17, -3, -11}, {23, 3, -10}}, seen.boxes[1]});
+  const SetsId id = hidden.world.useSets(hidden.ids, hidden.sets.boxes());
+  EXPECT_EQ(seen.world.useSets(seen.ids, of_seen.boxes()), id);
+  WorldCuller culler({.occlusion = false});
+  culler.useSets(id, &hidden.sets);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
+  culler.reset();
+  EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, seen.world, seen.ids));
+  culler.reset();
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
+}
+
+TEST(WorldSets, WhatIsSaidToHideNothingIsATombstoneWhereverThatIsSaid) {
+  for (int how = 0; how < 4; ++how) {
+    Shape shape = boxShape();
+    shape.settings.occludes = how != 1;
+    WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0),
+                           .occludes = how != 2,
+                           .displacement = how == 3 ? 0.5 : 0.0},
+                          shape);
+    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    EXPECT_EQ(scene.world.tombstones(id), how == 0 ? 0u : 1u) << how;
+    WorldCuller culler({.occlusion = false});
+    culler.useSets(id, &scene.sets);
+    EXPECT_EQ(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids), how != 0) << how;
+  }
+}
+
 }  // namespace
 }  // namespace sightline

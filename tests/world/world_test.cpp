@@ -432,5 +432,19 @@ TEST(World, BoxesOfWhatIsNoInstanceAreClassified) {
   EXPECT_EQ(scene.culler.classify(before), Visibility::kVisible);
 }
 
+// Of a culler that has culled nothing yet, no answer is known.
+TEST(World, BoxesMayBeSeenUntilSomethingWasCulled) {
+  WallAndCrate scene;
+  const Box crate = scene.story.world.boundsOf(scene.crate);
+  EXPECT_NE(scene.culler.classify(crate), Visibility::kHidden);
+  EXPECT_FALSE(scene.showsCrate());
+  EXPECT_EQ(scene.culler.classify(crate), Visibility::kHidden);
+  scene.culler.reset();
+  EXPECT_NE(scene.culler.classify(crate), Visibility::kHidden);
+  // Nothing is seen in no view at all.
+  scene.culler.cull(scene.story.world, std::span<const View>());
+  EXPECT_EQ(scene.culler.classify(crate), Visibility::kHidden);
+}
+
 }  // namespace
 }  // namespace sightline

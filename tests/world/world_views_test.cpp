@@ -66,6 +66,34 @@ TEST(WorldViews, WhatIsInNoGroupOfTheViewNeitherShowsNorHides) {
 
 // The near plane of a view says the same as a clip plane parallel to it, so exact visibility knows the
 // answer.
+TEST(WorldViews, WhatIsInNoGroupAtAllIsInNoView) {
+  World world;
+  const MeshId box = addShape(world, boxShape());
+  const Mat4 places[] = {boxAt({-2, 0, -6}, {1, 1, 1}), boxAt({0, 0, -6}, {1, 1, 1}),
+                         boxAt({2, 0, -6}, {1, 1, 1})};
+  const InstanceId none = world.add({.mesh = box, .world_from_mesh = places[0], .groups = 0}),
+                   some = world.add({.mesh = box, .world_from_mesh = places[1]}),
+                   removed = world.add({.mesh = box, .world_from_mesh = places[2], .groups = 0});
+  // Its place is not known.
+  world.add({.mesh = MeshId(), .groups = 0});
+  const View view = viewFrom({0, 0, 0}, {0, 0, -1});
+  const auto seen = [&] {
+    WorldCuller culler;
+    culler.cull(world, view);
+    culler.cull(world, view);
+    return std::vector(culler.visible().begin(), culler.visible().end());
+  };
+  EXPECT_EQ(seen(), std::vector{some});
+  world.remove(removed);
+  EXPECT_EQ(seen(), std::vector{some});
+  world.setGroups(none, 1);
+  EXPECT_EQ(seen(), (std::vector{none, some}));
+  world.setGroups(some, 0);
+  EXPECT_EQ(seen(), std::vector{none});
+  world.removeMesh(box);
+  EXPECT_TRUE(seen().empty());
+}
+
 TEST(WorldViews, WhatIsBehindTheClipPlaneNeitherShowsNorHides) {
   std::size_t culled = 0;
   for (std::uint32_t seed = 0; seed < test::rounds(8u); ++seed) {

@@ -160,6 +160,15 @@ class World {
   // always in the set of the cell that the line starts in, so what no line of sight meets hides nothing that
   // another thing does not hide too. An instance that is in several belongs to the last one. For an eye that
   // is in no cell of the baked scene, as in the next part of a streamed world, its sets leave nothing out.
+  //
+  // What is said to hide nothing is a tombstone as well: by Instance::occludes or displacement, or by
+  // MeshSettings::occludes. Else only boxes are compared, so it is for the caller to see to that an object is
+  // drawn as it was baked, with the same triangles, sides and opacity: one that was opaque and is now glass
+  // or alpha-tested, or was turned within its box, is not to be named in `objects`.
+  //
+  // An instance counts as unmoved if its box is off the baked one, along each axis, by at most 2^-20 of the
+  // terms of that coordinate in the baked scene, as rounding to single precision may leave it: a millimetre
+  // at a kilometre from that scene's origin.
   SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {});
   void dropSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew

@@ -69,6 +69,8 @@ class WorldCuller {
   // Several views at once, as those of two eyes: what any of them may see. The same number of views in the
   // same order in each frame is best.
   void cull(const World& world, std::span<const View> views);
+  // Forgets all frames. The clip plane and the sets stay in use; in another world, sets leave something out
+  // only if there, too, the same SetsId stands for their boxes.
   void reset();
 
   // For views with an oblique near plane or a user clip plane, as those of a mirror: nothing on the negative
@@ -77,6 +79,8 @@ class WorldCuller {
   void setClipPlane(const Plane& plane);
   // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use, at
   // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
+  // Sets of other boxes than World::useSets() was given leave nothing out; finding that takes time as the
+  // number of boxes, in this call.
   void useSets(SetsId id, VisibleSets* sets);
 
   // Answers of the last cull(). Spans, and depthBuffer(), are valid until the next cull() or reset(), or
@@ -97,7 +101,8 @@ class WorldCuller {
   DepthBufferView depthBuffer() const;  // of the first view
 
   // Whether a box of something that is no instance may be seen in one of the views: kHidden also means
-  // outside of them. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
+  // outside of them. Every box may be seen before the first cull(), after reset(), and in a view that is not
+  // usable. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
   // Several threads may ask at the same time.
   Visibility classify(const Box& box_from_origin) const;
 

@@ -41,17 +41,18 @@ struct MeshSettings {
   // drawn mesh open, and is in no join. Read during the call only.
   const MeshView* occluder = nullptr;
   // Not empty: all that is ever drawn lies in this box, in the mesh's space, or in that of the mesh (levels
-  // of detail, poses).
+  // of detail, poses). If one of its numbers is not finite, instances have no place, and are always kept.
   Box drawn_bounds{};
   SurfaceSettings surfaces{};
 };
 
 // Made by makeMesh() and not to be changed by hand.
 struct WorldMesh {
-  Box bounds{};                 // of all triangles, in the mesh's space; not well formed if one is not finite
+  Box bounds{};                 // of all that is drawn, in the mesh's space; not well formed if not finite
   SurfaceSet surfaces{};        // empty if the mesh never hides anything
   std::uint32_t triangles = 0;  // of the drawn mesh
   bool has_occluder = false;    // MeshSettings::occluder was given
+  bool occludes = true;         // MeshSettings::occludes
   // How many vertices the triangles of the mesh that hides name, and how many different positions these have.
   // Where both are equal and open_edges are many, positions that should be equal are not: it hides little.
   std::uint32_t vertices = 0, positions = 0;
