@@ -405,7 +405,8 @@ TEST(MethodOptions, AGivenOptionThatNoMethodHasIsTold) {
   const Outcome of_other_planes = runTool(
       {"cull", kCity, "--frames", "0", "--method", "supporting-planes", "--tangents", "all-vertices"});
   EXPECT_EQ(of_other_planes.code, 0);
-  EXPECT_EQ(of_other_planes.err, "sightline: --tangents changes nothing here: it has no meaning beside the other options\n");
+  EXPECT_EQ(of_other_planes.err,
+            "sightline: --tangents changes nothing here: it has no meaning beside the other options\n");
 }
 
 }  // namespace
