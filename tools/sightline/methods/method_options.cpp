@@ -69,7 +69,7 @@ Value methodName() {
           [set](const std::string& text, Setting& setting) {
             return text == kAutomaticMethod || set(text, setting);
           },
-          [](Setting setting) { return Json(setting.method->name); }, names};
+          [](const Setting& setting) { return Json(setting.method->name); }, names};
 }
 
 Value whole(std::uint32_t min, std::uint32_t max, Field<std::uint32_t> field) {
