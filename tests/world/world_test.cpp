@@ -432,7 +432,7 @@ TEST(World, BoxesOfWhatIsNoInstanceAreClassified) {
   EXPECT_EQ(scene.culler.classify(before), Visibility::kVisible);
 }
 
-// Of a culler that has culled nothing yet, no answer is known.
+// A culler that has culled nothing yet knows no answer.
 TEST(World, BoxesMayBeSeenUntilSomethingWasCulled) {
   WallAndCrate scene;
   const Box crate = scene.story.world.boundsOf(scene.crate);

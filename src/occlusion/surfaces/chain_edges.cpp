@@ -92,8 +92,8 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 namespace {
 
-// Of the lines that are added where a boundary is cut: their values, and how many ends they may have. Each
-// end is compared with all others.
+// These bound the lines that closeCut() adds: their values, and how many ends they may link, for each end is
+// compared with all others.
 constexpr std::int64_t kMostLinked = std::int64_t{1} << 30;
 constexpr std::size_t kMostOpen = 64;
 
