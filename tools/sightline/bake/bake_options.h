@@ -11,9 +11,9 @@
 #include "sightline/comparison/viewpoint_database.h"
 #include "sightline/pvs/bake/bake.h"
 #include "tools/sightline/bake/viewer_options.h"
+#include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/input/crack_note.h"
-#include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
 

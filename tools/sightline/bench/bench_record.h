@@ -11,7 +11,7 @@
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/bench/frame_times.h"
 #include "tools/sightline/input/crack_note.h"
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/methods/setting.h"
 
 namespace sightline::tool {
 

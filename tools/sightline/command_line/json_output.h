@@ -1,12 +1,14 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "sightline/base/result.h"
-#include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
+
+using Json = nlohmann::ordered_json;
 
 // The JSON on one line, keys in the order of insertion. Text that is not UTF-8 is replaced, not refused.
 std::string dump(const Json& json);

@@ -11,7 +11,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/query/sight_file.h"
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/command_line/json_output.h"
 
 namespace sightline::tool {
 

@@ -6,7 +6,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/render/layer_image.h"
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/command_line/json_output.h"
 
 namespace sightline::tool {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/methods/setting.h"
 
 namespace sightline::tool {
 

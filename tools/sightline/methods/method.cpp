@@ -9,7 +9,7 @@
 #include "sightline/culling/opacity_map_method.h"
 #include "sightline/culling/supporting_planes_method.h"
 #include "sightline/culling/visibility_octree_method.h"
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/methods/setting.h"
 
 namespace sightline::tool {
 namespace {

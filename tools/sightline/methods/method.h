@@ -3,6 +3,7 @@
 // A table of the culling methods: each row has the method's name, the function that makes it and the options
 // that it has. Whether it needs occluders or sets is told by the library's MethodTraits.
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -22,6 +23,11 @@ struct Method {
   std::vector<std::string_view> options;
   // Groups of statistics that the tool does not show.
   std::vector<std::string_view> hidden_statistics{};
+
+  // Whether it has the option, at least for some values of its other options.
+  bool has(std::string_view option) const {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  }
 };
 
 // Returns all methods in the order in which they are listed.

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/methods/setting.h"
 
 namespace sightline::tool {
 

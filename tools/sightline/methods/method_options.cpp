@@ -142,7 +142,7 @@ bool always(const Setting&) {
   return true;
 }
 bool usesOccluders(const Setting& setting) {
-  return setting.method->traits.occluders;
+  return setting.usesOccluders();
 }
 bool choosesOccluders(const Setting& setting) {
   return setting.choosesOccluders();
@@ -193,11 +193,6 @@ bool usesDatabase(const Setting& setting) {
   return setting.usesDatabase() || setting.testsDetailObjects();
 }
 
-// Whether the method names the option in its row: it has it for some values of its other options.
-bool hasOption(const Method& method, std::string_view name) {
-  return std::find(method.options.begin(), method.options.end(), name) != method.options.end();
-}
-
 struct Option {
   std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
   bool of_methods;   // only methods that name it in their rows have it
@@ -210,7 +205,7 @@ struct Option {
   // Whether the option has a meaning for a setting in which the options above it are set. If not, it is
   // neither set nor shown, and its list of values does not multiply the setting.
   bool belongs(const Setting& setting) const {
-    return (!of_methods || hasOption(*setting.method, name)) && when(setting);
+    return (!of_methods || setting.method->has(name)) && when(setting);
   }
 };
 
@@ -483,14 +478,14 @@ MethodOptions withChoice(MethodOptions options, const MethodChoice& choice) {
 // Why a given option has no meaning for any of the settings.
 std::string uselessBecause(const Option& option, const std::vector<Setting>& settings) {
   const bool is_in_use = std::any_of(settings.begin(), settings.end(), [&](const Setting& setting) {
-    return hasOption(*setting.method, option.name);
+    return setting.method->has(option.name);
   });
   if (!option.of_methods || is_in_use) {
     return "it has no meaning beside the other options";
   }
   std::string methods;
   for (const Method& method : allMethods()) {
-    if (hasOption(method, option.name)) {
+    if (method.has(option.name)) {
       methods += (methods.empty() ? "" : ",") + std::string(method.name);
     }
   }
@@ -511,76 +506,6 @@ void noteUseless(const MethodOptions& options, const std::vector<Setting>& setti
 }
 
 }  // namespace
-
-SurfaceUse Setting::surfaces() const {
-  if (raster.coverage != nullptr || !hasOption(*method, "surfaces")) {
-    return SurfaceUse::kNone;
-  }
-  switch (surface_option) {
-    case SurfaceOption::kNone:
-      return SurfaceUse::kNone;
-    case SurfaceOption::kAlone:
-      return SurfaceUse::kAlone;
-    case SurfaceOption::kWithOccluders:
-      return SurfaceUse::kWithOccluders;
-    case SurfaceOption::kAutomatic:
-      break;
-  }
-  return method->name == "depth-pyramid" && occluders == OccluderChoice::kAreaAngle ? SurfaceUse::kAlone
-                                                                                    : SurfaceUse::kNone;
-}
-
-std::uint32_t Setting::objectBoxes() const {
-  const std::uint32_t usual = method->name == "depth-pyramid" ? kMaxObjectBoxes : 1;
-  return !testsObjects(*this) ? 1 : object_box_option > 0 ? object_box_option : usual;
-}
-
-bool Setting::choosesOccluders() const {
-  return usesOccluders(*this) && surfaces() != SurfaceUse::kAlone;
-}
-
-bool Setting::usesDatabase() const {
-  return choosesOccluders() && occluders == OccluderChoice::kDatabase;
-}
-
-bool Setting::usesViewpoints() const {
-  return choosesOccluders() &&
-         (occluders == OccluderChoice::kMinimumSets || occluders == OccluderChoice::kFirstHit ||
-          occluders == OccluderChoice::kProjectedSize);
-}
-
-bool Setting::usesDepthBuffer() const {
-  return hasOption(*method, "resolution");
-}
-
-bool Setting::approximate() const {
-  const bool tolerates = method->name == "opacity-map" && opacity_map.map.tolerance > 0;
-  return (usesDepthBuffer() && raster.coverage != nullptr) || tolerates;
-}
-
-bool Setting::testsDetailObjects() const {
-  return usesOccluders(*this) && detail_objects;
-}
-
-bool Setting::knowsRendererCost() const {
-  return usesOccluders(*this) && (renderer.object_us > 0.0 || renderer.triangle_us > 0.0);
-}
-
-bool Setting::usesVisibleSets() const {
-  const SetUse use = method->traits.sets;
-  return use == SetUse::kAlways || (use == SetUse::kIfAsked && culler.visible_sets);
-}
-
-std::unique_ptr<CullingMethod> makeMethod(const Setting& setting) {
-  std::unique_ptr<CullingMethod> method = setting.method->make(setting);
-  if (setting.testsDetailObjects()) {
-    DetailObjectsSettings detail = setting.detail;
-    detail.planes.joint_occlusion =
-        !optionNamed("joint").belongs(setting) || setting.kept_planes.joint_occlusion;
-    method = detailObjects(std::move(method), detail);
-  }
-  return setting.knowsRendererCost() ? whileItPays(std::move(method), setting.renderer) : std::move(method);
-}
 
 MethodOptions::MethodOptions() {
   for (const Option& option : allOptions()) {
@@ -654,16 +579,6 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options,
     setting.viewpoints.criterion = criterionOf(setting.occluders);
   }
   return settings;
-}
-
-OccluderCriterion criterionOf(OccluderChoice choice) {
-  return choice == OccluderChoice::kFirstHit        ? OccluderCriterion::kFirstHit
-         : choice == OccluderChoice::kProjectedSize ? OccluderCriterion::kProjectedSize
-                                                    : OccluderCriterion::kMinimumSets;
-}
-
-std::string methodName(const Setting& setting) {
-  return std::string(setting.method->name);
 }
 
 std::string optionsText(const Setting& setting) {

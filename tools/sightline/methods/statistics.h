@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/sightline/methods/method_options.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/methods/setting.h"
 
 namespace sightline::tool {
 
