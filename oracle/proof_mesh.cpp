@@ -10,10 +10,6 @@
 namespace sightline {
 namespace {
 
-std::uint64_t edgeOf(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
 bool runs(const ProofMesh::Triangle& t, std::uint32_t from, std::uint32_t to) {
   return (t.vertex[0] == from && t.vertex[1] == to) || (t.vertex[1] == from && t.vertex[2] == to) ||
          (t.vertex[2] == from && t.vertex[0] == to);
@@ -23,6 +19,9 @@ bool runs(const ProofMesh::Triangle& t, std::uint32_t from, std::uint32_t to) {
 
 ProofMesh::ProofMesh(const SceneView& s) : scene(s), tree(s) {
   gather();
+  findEdges();
+  findBodies();
+  findPartners();
 }
 
 void ProofMesh::gather() {
@@ -55,12 +54,33 @@ void ProofMesh::gather() {
     }
   }
   first_of.back() = static_cast<std::uint32_t>(triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+}
+
+void ProofMesh::findEdges() {
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by both vertices, the lower one first
+  for (Triangle& t : triangles) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      edges[edgeOf(triangles[i].vertex[k], triangles[i].vertex[(k + 1) % 3])].push_back(i);
+      const auto [low, high] = std::minmax(t.vertex[k], t.vertex[(k + 1) % 3]);
+      t.edge[k] = numbers.emplace(std::uint64_t{low} << 32 | high, static_cast<std::uint32_t>(edges.size()))
+                      .first->second;
+      edges.resize(std::max<std::size_t>(edges.size(), t.edge[k] + 1));
+      edges[t.edge[k]].count += 1;
     }
   }
-  findBodies();
+  std::size_t first = 0;
+  for (Edge& edge : edges) {
+    edge.first = first;
+    first += std::exchange(edge.count, 0);
+  }
+  at_edges.resize(first);
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    for (const std::uint32_t number : triangles[i].edge) {
+      Edge& edge = edges[number];
+      at_edges[edge.first + edge.count++] = i;
+      edge.of_one_object =
+          triangles[at_edges[edge.first]].object == triangles[i].object && edge.of_one_object;
+    }
+  }
 }
 
 // Finds what of each object is connected over edges, and whether its directed edges cancel.
@@ -78,7 +98,7 @@ void ProofMesh::findBodies() {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t from = t.vertex[k], to = t.vertex[(k + 1) % 3];
         int sum = 0;
-        for (const std::uint32_t other : edges.at(edgeOf(from, to))) {
+        for (const std::uint32_t other : trianglesAt(t.edge[k])) {
           if (triangles[other].object != t.object) {
             continue;
           }
@@ -95,11 +115,23 @@ void ProofMesh::findBodies() {
   }
 }
 
-std::uint32_t ProofMesh::partnerOf(std::uint32_t sheet, std::uint32_t from, std::uint32_t to,
+void ProofMesh::findPartners() {
+  partners.assign(2 * triangles.size(), {kNoSheet, kNoSheet, kNoSheet});
+  for (std::uint32_t sheet = 0; sheet < partners.size(); ++sheet) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if ((sheet % 2 == 0 || triangles[sheet / 2].double_sided) && edges[edgeOf(sheet, k)].of_one_object) {
+        partners[sheet][k] = partnerAt(sheet, k, {});
+      }
+    }
+  }
+}
+
+std::uint32_t ProofMesh::partnerAt(std::uint32_t sheet, std::uint32_t k,
                                    std::span<const std::uint32_t> left_out) const {
   std::vector<std::uint32_t> there, back;
-  const std::uint32_t low = std::min(from, to), high = std::max(from, to);
-  for (const std::uint32_t t : edges.at(edgeOf(from, to))) {
+  const std::array<std::uint32_t, 3> vertices = verticesOf(sheet);
+  const auto [low, high] = std::minmax(vertices[k], vertices[(k + 1) % 3]);
+  for (const std::uint32_t t : trianglesAt(edgeOf(sheet, k))) {
     if (std::find(left_out.begin(), left_out.end(), triangles[t].object) != left_out.end()) {
       continue;
     }

@@ -23,7 +23,14 @@ struct ProofMesh {
     std::uint32_t object = 0;
     bool double_sided = false;
     std::array<std::uint32_t, 3> vertex{};
+    std::array<std::uint32_t, 3> edge{};  // from each vertex to the next
     Corners at{};
+  };
+  // The triangles at an edge: at_edges[first, first + count), ascending.
+  struct Edge {
+    std::size_t first = 0;
+    std::uint32_t count = 0;
+    bool of_one_object = true;
   };
   struct Body {
     std::vector<std::uint32_t> triangles;
@@ -41,10 +48,17 @@ struct ProofMesh {
     const auto& v = triangles[sheet / 2].vertex;
     return sheet % 2 == 0 ? v : std::array<std::uint32_t, 3>{v[0], v[2], v[1]};
   }
-  // The sheet that is joined with this one at its edge, without the left-out objects; kNoSheet if there is
-  // none. Joining is mutual, so that joined edges cancel, whatever the choice.
-  std::uint32_t partnerOf(std::uint32_t sheet, std::uint32_t from, std::uint32_t to,
-                          std::span<const std::uint32_t> left_out) const;
+  // The edge from the sheet's vertex k (of verticesOf) to the next.
+  std::uint32_t edgeOf(std::uint32_t sheet, std::uint32_t k) const {
+    return triangles[sheet / 2].edge[sheet % 2 == 0 ? k : 2 - k];
+  }
+  // The sheet that is joined with this one at its edge k, without the left-out objects, of which the sheet's
+  // own is none; kNoSheet if there is none. Joining is mutual, so that joined edges cancel, whatever the
+  // choice.
+  std::uint32_t partnerOf(std::uint32_t sheet, std::uint32_t k,
+                          std::span<const std::uint32_t> left_out) const {
+    return edges[edgeOf(sheet, k)].of_one_object ? partners[sheet][k] : partnerAt(sheet, k, left_out);
+  }
   // True if the segment surely meets no triangle of the object.
   bool misses(const Vec3d& from, const Vec3d& to, ObjectId object) const;
 
@@ -53,13 +67,23 @@ struct ProofMesh {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first_of;                         // by object: its first triangle
   std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // by first index in the scene
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> edges;
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> at_edges;  // triangles
+  // By sheet: those that it is joined with if no object is left out; only of edges of one object.
+  std::vector<std::array<std::uint32_t, 3>> partners;
   std::vector<Body> bodies;
   std::vector<std::uint32_t> body_of;
 
  private:
   void gather();
+  void findEdges();
   void findBodies();
+  void findPartners();
+  std::span<const std::uint32_t> trianglesAt(std::uint32_t edge) const {
+    return std::span(at_edges).subspan(edges[edge].first, edges[edge].count);
+  }
+  std::uint32_t partnerAt(std::uint32_t sheet, std::uint32_t k,
+                          std::span<const std::uint32_t> left_out) const;
 };
 
 }  // namespace sightline

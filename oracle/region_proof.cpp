@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <unordered_map>
+#include <utility>
 
 #include "oracle/proof_mesh.h"
 #include "oracle/region_hull.h"
@@ -207,9 +209,28 @@ class RegionProof::Attempt {
     return from_eyes && (apart(box, target_, 0.0) || allOn(t, true, false) || allOn(t, false, false));
   }
 
+  // What is the same of a sheet whichever surface it is met in.
+  struct SheetFacts {
+    bool known = false;
+    bool spoils = false;                 // a line of sight may begin or end at it
+    std::array<bool, 3> misses_shaft{};  // by edge
+    std::uint32_t follow = 0;            // number of the last surface that it was in
+  };
+  const SheetFacts& factsOf(std::uint32_t sheet, const Shaft& shaft) {
+    SheetFacts& facts = sheets_[sheet];
+    if (!facts.known) {
+      const Corners at = mesh_.cornersOf(sheet);
+      facts.known = true;
+      facts.spoils = !clearOfEnds(at) && !shaft.isMissedBy(at);
+      facts.misses_shaft = {shaft.isMissedBy(at.a, at.b), shaft.isMissedBy(at.b, at.c),
+                            shaft.isMissedBy(at.c, at.a)};
+    }
+    return facts;
+  }
+
   // Follows the surface of a triangle, again and again without the objects that kept it from being a proof:
   // any triangles may be left out of it.
-  bool surfaceHides(std::uint32_t triangle, const Shaft& shaft) const {
+  bool surfaceHides(std::uint32_t triangle, const Shaft& shaft) {
     std::vector<std::uint32_t> left_out{claim_.target.value};
     while (left_out.size() <= kMostLeftOut) {
       std::optional<std::uint32_t> spoiler;
@@ -227,7 +248,7 @@ class RegionProof::Attempt {
   // spoiler: set to an object, not yet left out, of which a triangle is too near or ends in the shaft, if
   // that is what is wrong.
   bool surfaceHides(std::uint32_t triangle, const Shaft& shaft, std::span<const std::uint32_t> left_out,
-                    std::optional<std::uint32_t>& spoiler) const {
+                    std::optional<std::uint32_t>& spoiler) {
     const ProofMesh::Triangle& t = mesh_.triangles[triangle];
     std::uint32_t start = 2 * triangle;
     if (sideOf(t.at, starts_[0]).negative()) {
@@ -236,29 +257,28 @@ class RegionProof::Attempt {
       }
       start += 1;
     }
+    follows_ += 1;
+    sheets_[start].follow = follows_;
     std::vector<std::uint32_t> members{start};
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const Corners at = mesh_.cornersOf(members[i]);
-      const std::array<Vec3d, 3> p{at.a, at.b, at.c};
-      const std::array<std::uint32_t, 3> vertices = mesh_.verticesOf(members[i]);
       if (members.size() > kMostMembers) {
         return false;
       }
-      if (!clearOfEnds(at) && !shaft.isMissedBy(at)) {
+      const SheetFacts& facts = factsOf(members[i], shaft);
+      if (facts.spoils) {
         spoiler = mesh_.triangles[members[i] / 2].object;
         return false;
       }
       for (std::uint32_t k = 0; k < 3; ++k) {
-        if (shaft.isMissedBy(p[k], p[(k + 1) % 3])) {
+        if (facts.misses_shaft[k]) {
           continue;
         }
-        const std::uint32_t partner =
-            mesh_.partnerOf(members[i], vertices[k], vertices[(k + 1) % 3], left_out);
+        const std::uint32_t partner = mesh_.partnerOf(members[i], k, left_out);
         if (partner == ProofMesh::kNoSheet) {
           spoiler = mesh_.triangles[members[i] / 2].object;
           return false;
         }
-        if (std::find(members.begin(), members.end(), partner) == members.end()) {
+        if (std::exchange(sheets_[partner].follow, follows_) != follows_) {
           members.push_back(partner);
         }
       }
@@ -284,6 +304,8 @@ class RegionProof::Attempt {
   std::array<Vec3d, kSightLines> starts_{}, ends_{};
   DoubleBox target_, around_{};
   std::vector<std::uint32_t> candidates_;
+  std::unordered_map<std::uint32_t, SheetFacts> sheets_;  // of the one shaft that there is
+  std::uint32_t follows_ = 0;
 };
 
 RegionProof::RegionProof(const SceneView& scene) : mesh_(std::make_unique<ProofMesh>(scene)) {}

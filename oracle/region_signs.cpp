@@ -2,31 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace sightline {
-namespace {
-
-// A dot product of a vector and a difference of points is off by at most this fraction of their sizes, which
-// is far more than IEEE arithmetic can lose in so few operations.
-constexpr double kProduct = 0x1p-46;
-
-}  // namespace
-
-double sizeOf(const Vec3d& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
-
-Sign along(const Vec3d& n, const Vec3d& a, const Vec3d& b) {
-  const Vec3d d = a - b;
-  return {dot(n, d), kProduct * sizeOf(n) * (sizeOf(d) + 0x1p-6 * (sizeOf(a) + sizeOf(b)))};
-}
 
 Sign sideOf(const Corners& t, const Vec3d& p) {
   const Vec3d a = t.a - p, b = t.b - p, c = t.c - p;
   const double la = sizeOf(a), lb = sizeOf(b), lc = sizeOf(c);
   const double shift = 0x1p-50 * (sizeOf(p) + std::max({sizeOf(t.a), sizeOf(t.b), sizeOf(t.c)}));
-  return {-dot(a, cross(b, c)), kProduct * la * lb * lc + 4.0 * shift * (la * lb + lb * lc + lc * la)};
+  return {-dot(a, cross(b, c)), kProductDoubt * la * lb * lc + 4.0 * shift * (la * lb + lb * lc + lc * la)};
 }
 
 std::optional<int> crossing(const Corners& t, const Vec3d& from, const Vec3d& to) {

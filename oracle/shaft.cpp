@@ -40,25 +40,25 @@ void Shaft::addSide(const Vec3d& normal) {
   sides_.push_back({normal, *top});
 }
 
-bool Shaft::beyond(const Vec3d& normal, const Vec3d& p, const Vec3d& q) const {
-  return std::all_of(hull_.begin(), hull_.end(), [&](const Vec3d& h) {
-    return along(normal, p, h).positive() && along(normal, q, h).positive();
-  });
+bool Shaft::isBeyondTop(const Side& side, const Vec3d& p) {
+  return along(side.normal, p, side.top).positive();
+}
+
+bool Shaft::isBeyond(const Side& side, const Vec3d& p) const {
+  return std::all_of(hull_.begin(), hull_.end(),
+                     [&](const Vec3d& h) { return along(side.normal, p, h).positive(); });
 }
 
 bool Shaft::isMissedBy(const Vec3d& p, const Vec3d& q) const {
-  for (const Side& side : sides_) {
-    if (along(side.normal, p, side.top).positive() && along(side.normal, q, side.top).positive() &&
-        beyond(side.normal, p, q)) {
-      return true;
-    }
-  }
-  return false;
+  return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+    return isBeyondTop(side, p) && isBeyondTop(side, q) && isBeyond(side, p) && isBeyond(side, q);
+  });
 }
 
 bool Shaft::isMissedBy(const Corners& t) const {
   return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
-    return beyond(side.normal, t.a, t.b) && beyond(side.normal, t.c, t.c);
+    return isBeyondTop(side, t.a) && isBeyondTop(side, t.b) && isBeyondTop(side, t.c) &&
+           isBeyond(side, t.a) && isBeyond(side, t.b) && isBeyond(side, t.c);
   });
 }
 

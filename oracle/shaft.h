@@ -25,7 +25,10 @@ class Shaft {
   };
 
   void addSide(const Vec3d& normal);
-  bool beyond(const Vec3d& normal, const Vec3d& p, const Vec3d& q) const;
+  // True only if the point is beyond all of the hull; beyond its top is a first look, as the top is one
+  // point.
+  static bool isBeyondTop(const Side& side, const Vec3d& p);
+  bool isBeyond(const Side& side, const Vec3d& p) const;
 
   std::vector<Vec3d> hull_;
   std::vector<Side> sides_;

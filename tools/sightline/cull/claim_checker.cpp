@@ -20,6 +20,8 @@ namespace {
 
 // Claims that are decided together, or a leaf if it has more: enough for all threads.
 constexpr std::size_t kClaimsAtOnce = 1 << 14;
+// So many are judged between two looks at the progress.
+constexpr std::size_t kJudgedAtOnce = 1 << 10;
 
 struct Claim {
   std::uint32_t leaf = 0, position = 0;  // position: in BoxTree::objects
@@ -45,6 +47,17 @@ enum class ClaimVerdict : std::uint8_t { kProved, kSurvived, kContradicted };
 bool namesObject(const HidingWitness& witness) {
   return witness.kind == WitnessKind::kConvex || witness.kind == WitnessKind::kSurfaces;
 }
+
+CellPart partOf(const HidingWitness& witness) {
+  return witness.part == WitnessPart::kFront  ? CellPart::kFront
+         : witness.part == WitnessPart::kBack ? CellPart::kBack
+                                              : CellPart::kWhole;
+}
+
+// A stretch of the progress, 0 to 1, that some work takes.
+struct Stretch {
+  double from = 0.0, to = 1.0;
+};
 
 class Checker {
  public:
@@ -72,7 +85,7 @@ class Checker {
       order.push_back(leaf);
       addViewers(leaf);
     });
-    ProgressBar progress("checking claims");
+    double done = 0.0;
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (const Status ok = addLeaf(order[i]); !ok) {
         return ok.error();
@@ -80,13 +93,15 @@ class Checker {
       if (claims_.size() < kClaimsAtOnce && i + 1 < order.size()) {
         continue;
       }
-      if (const Status ok = judgeUses(); !ok) {
+      const double next = static_cast<double>(i + 1) / static_cast<double>(order.size());
+      const double middle = 0.5 * (done + next);
+      if (const Status ok = judgeUses({done, middle}); !ok) {
         return ok.error();
       }
-      decideClaims();
+      decideClaims({middle, next});
       forgetUses(cellNumber(cells_[order[i]]));
       claims_.clear(), uses_.clear();
-      progress.update(static_cast<double>(i + 1) / static_cast<double>(order.size()));
+      done = next;
     }
     return std::move(report_);
   }
@@ -184,14 +199,11 @@ class Checker {
   // The region of a witness of a leaf's cell, or of one around or below it. A side is that of the leaf's
   // plane; without a plane, no claim rests on a witness of a side.
   EyeRegion regionOfWitness(const HidingWitness& witness, std::uint32_t leaf) const {
-    return eyesIn(witness.cell, leaf,
-                  witness.part == WitnessPart::kFront  ? CellPart::kFront
-                  : witness.part == WitnessPart::kBack ? CellPart::kBack
-                                                       : CellPart::kWhole);
+    return eyesIn(witness.cell, leaf, partOf(witness));
   }
 
   // Judges what the claims rest on, each once.
-  Status judgeUses() {
+  Status judgeUses(const Stretch& stretch) {
     std::vector<JudgedUse> asked;
     for (const Claim& claim : claims_) {
       for (const WitnessUse& use : usesOf(claim)) {
@@ -205,7 +217,7 @@ class Checker {
     std::vector<JudgedUse> fresh;
     std::set_difference(asked.begin(), asked.end(), judged_.begin(), judged_.end(), std::back_inserter(fresh),
                         before);
-    forAll(fresh.size(), [&](std::size_t i) {
+    forAll(fresh.size(), stretch, [&](std::size_t i) {
       judge(fresh[i], i == 0 || fresh[i - 1].use.witness != fresh[i].use.witness);
     });
     const auto false_one =
@@ -260,7 +272,7 @@ class Checker {
     }
   }
 
-  void decideClaims() {
+  void decideClaims(const Stretch& stretch) {
     std::vector<ClaimVerdict> verdicts(claims_.size(), ClaimVerdict::kProved);
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < claims_.size(); ++i) {
@@ -269,7 +281,8 @@ class Checker {
       }
     }
     std::vector<ContradictedClaim> found(open.size());
-    forAll(open.size(), [&](std::size_t i) { verdicts[open[i]] = decide(claims_[open[i]], found[i]); });
+    forAll(open.size(), stretch,
+           [&](std::size_t i) { verdicts[open[i]] = decide(claims_[open[i]], found[i]); });
     for (std::size_t i = 0; i < claims_.size(); ++i) {
       CheckRow& row = report_.rows[rowOf(claims_[i])];
       row.claims += 1;
@@ -285,9 +298,19 @@ class Checker {
     }
   }
 
+  // Whether judging what the claim rests on was to ask all that there is to ask about the claim itself.
+  bool wasAsked(const Claim& claim) const {
+    if (claim.witnesses.place != WitnessPlace::kHere) {
+      return false;
+    }
+    const HidingWitness& witness = witnesses_[usesOf(claim).front().witness];
+    return !namesObject(witness) && partOf(witness) == claim.part;
+  }
+
   ClaimVerdict decide(const Claim& claim, ContradictedClaim& found) const {
     const EyeRegion region = regionOf(octree_, cells_[claim.leaf], claim.leaf, claim.part);
-    if (proof_.provesInParts(regionClaim(region, claim.position, {}), settings_.divisions)) {
+    if (!wasAsked(claim) &&
+        proof_.provesInParts(regionClaim(region, claim.position, {}), settings_.divisions)) {
       return ClaimVerdict::kProved;
     }
     RegionSearchSettings search;
@@ -324,12 +347,17 @@ class Checker {
   }
 
   template <typename Do>
-  void forAll(std::size_t count, Do&& work) const {
-    threads_.parallelFor()(static_cast<std::uint32_t>(count), [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        work(i);
-      }
-    });
+  void forAll(std::size_t count, const Stretch& stretch, Do&& work) {
+    for (std::size_t first = 0; first < count; first += kJudgedAtOnce) {
+      const std::size_t size = std::min(kJudgedAtOnce, count - first);
+      threads_.parallelFor()(static_cast<std::uint32_t>(size), [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+          work(i);
+        }
+      });
+      progress_.update(stretch.from + (stretch.to - stretch.from) * static_cast<double>(first + size) /
+                                          static_cast<double>(count));
+    }
   }
 
   const SightFile& baked_;
@@ -342,6 +370,7 @@ class Checker {
   const RegionProof proof_;
   const RegionSearch search_;
   const Threads threads_;
+  ProgressBar progress_{"checking claims"};
   std::vector<OctreeCell> cells_;  // of all leaves
   // The box around the viewers of all leaves in a cell, by its number; none if the file says of no cell where
   // viewers are.
