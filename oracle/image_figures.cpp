@@ -73,8 +73,7 @@ unsigned bits(const WholeVec& v) {
 RoundedVec rounded(const WholeVec& v) {
   const unsigned size = bits(v), dropped = size > 60 ? size - 60 : 0;
   const auto coordinate = [&](const Whole& c) {
-    return std::ldexp(static_cast<double>(Whole(c >> dropped)),
-                      static_cast<int>(dropped) - static_cast<int>(size));
+    return std::ldexp(leadingPart(c, dropped), static_cast<int>(dropped) - static_cast<int>(size));
   };
   return {{coordinate(v.x), coordinate(v.y), coordinate(v.z)}, size > 0 ? 4.0 * kRounding : 0.0};
 }

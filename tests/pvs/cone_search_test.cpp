@@ -137,6 +137,25 @@ TEST(ConeSearch, LeavesOutNoBoxThatALineFromBoxToBoxPasses) {
   EXPECT_GT(left_out, beside / 2);
 }
 
+TEST(ConeSearch, LeavesNothingOutAtTheEndOfTheRangeOfSinglePrecision) {
+  for (int exponent = 120; exponent < 128; ++exponent) {
+    const double size = std::ldexp(1.0, exponent);
+    const CellBox from{{-size, -size, 0.0}, {-size, size, 0.0}}, to{{size, -size, 0.0}, {size, size, 0.0}};
+    const Cone lines(from, to, 0.0, size);
+    BoxLanes boxes;
+    for (const double at : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+      const auto x = static_cast<float>(at * size);
+      boxes.add({{x, 0.0f, 0.0f}, {x, 0.0f, 0.0f}}, static_cast<std::uint32_t>(boxes.size()));
+    }
+    const auto count = boxes.size();
+    boxes.pad();
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      const test::ForcedInstructionSet forced(target);
+      EXPECT_EQ(placesMetOf(boxes, {&lines, 1}).size(), count) << "2^" << exponent;
+    }
+  }
+}
+
 TEST(ConeSearch, LeavesOutMostOfWhatIsBesideTheCone) {
   std::size_t beside = 0, found_beside = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "src/hierarchy/wide_hierarchy.h"
 
@@ -90,6 +91,8 @@ HWY_EXPORT(findMet);
 constexpr std::uint32_t kNodeBit = 1u << 31;
 // Single precision loses less than this of the difference of two coordinates, in units of their bound.
 constexpr double kRounding = 0x1p-21;
+// The inverses of what is less far have all their digits.
+constexpr double kFarthestInSingles = 0x1p126;
 
 float inverseOf(double end, float if_zero) {
   return std::abs(end) > 1e-25 ? 1.0f / static_cast<float>(end) : if_zero;
@@ -103,6 +106,12 @@ Cone::Cone(const CellBox& from, const CellBox& to, double margin, double magnitu
     const double far = to.max[a] - from.max[a], near = to.min[a] - from.min[a];
     // Where an end stays where it is along an axis, all of the cone is before what lies beyond it.
     Axis& axis = axes[static_cast<std::size_t>(a)];
+    // Beyond the range of single precision, the axis bounds nothing.
+    if (!(std::max(std::abs(far), std::abs(near)) < kFarthestInSingles)) {
+      constexpr float kMost = std::numeric_limits<float>::max();
+      axis = {.low = kMost, .high = -kMost, .inverse_far = 1.0f, .inverse_near = -1.0f};
+      continue;
+    }
     axis.low = static_cast<float>(from.max[a] + slack);
     axis.high = static_cast<float>(from.min[a] - slack);
     axis.inverse_far = inverseOf(far, 1e25f);
