@@ -66,9 +66,10 @@ Frustum frustumOf(const View& given) {
     frustum.planes.fill({Vec3d(), 1.0});
     return frustum;
   }
-  const auto through = [](const Vec3d& normal, const Vec3d& point) {
-    const Vec3d unit = normalized(normal);
-    return Plane{unit, -dot(unit, point)};
+  // Moved outwards by more than the rounding of the normal and the point, which the view's coordinates bound.
+  const auto through = [&view](const Vec3d& normal, const Vec3d& point) {
+    const Vec3d unit = normalized(normal), size = abs(view.eye) + abs(point);
+    return Plane{unit, -dot(unit, point) + 0x1p-49 * (size.x + size.y + size.z)};
   };
   // From the forward axis to the borders: tangents of angles, or metres in an orthographic view.
   const double half_height = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;

@@ -46,7 +46,9 @@ bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
     return true;
   }
   const Vec3d to_origin = data.origin - joined.join.origin;
-  const double rounding = clip_rounding_ + 0x1p-48 * dot(abs(clip_.normal), abs(to_origin));
+  // The members lie within join.rounding of where the join's surfaces are.
+  const double rounding = clip_rounding_ + joined.join.rounding * length(clip_.normal) +
+                          0x1p-48 * dot(abs(clip_.normal), abs(to_origin));
   return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds, rounding) > 0;
 }
 

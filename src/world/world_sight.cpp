@@ -34,12 +34,14 @@ bool aimAt(const Vec3d& from, const Box& box, const Vec3d& origin, double near, 
     return false;
   }
   view.eye = from;
-  setOrientation(view, center(box) + origin - from, {0, 1, 0});
+  // Near the point, this difference is exact, however far both are from the origin of world space.
+  const Vec3d to_point = from - origin;
+  setOrientation(view, center(box) - to_point, {0, 1, 0});
   double wide = 0.0, high = 0.0, far = 0.0, nearest = HUGE_VAL;
   for (int i = 0; i < 8; ++i) {
     const Vec3d corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
                        (i & 4) != 0 ? box.max.z : box.min.z);
-    const Vec3d at = corner + origin - from;
+    const Vec3d at = corner - to_point;
     const double depth = dot(view.forward, at);
     wide = std::max(wide, std::abs(dot(view.right, at)) / depth);
     high = std::max(high, std::abs(dot(view.up, at)) / depth);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -103,6 +104,50 @@ TEST(Camera, ClipSpaceAndFrustumAgreeOnWhatIsInside) {
       }
     }
   }
+}
+
+// Boxes at a border of an orthographic picture, and at the far plane of a perspective one, from eyes that are
+// far away. The test judges by long double, which on some machines could judge nothing.
+TEST(Camera, NoBoxThatReachesIntoTheFrustumIsOutsideHoweverFarAwayTheEyeIs) {
+  if (std::numeric_limits<long double>::digits < 64) {
+    GTEST_SKIP() << "needs a long double of more digits to judge";
+  }
+  std::size_t inside = 0;
+  for (const double away : {1e4, 1e6, 1e9, 1.5e11}) {
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+      std::mt19937 random(seed);
+      View view;
+      setOrientation(view, randomVector(random, 1.0), {0, 0, 1});
+      view.eye = -view.forward * away;
+      view.orthographic = seed % 2 == 0;
+      view.z_far = view.orthographic ? 2.0 * away : away;
+      view.aspect = 1.0;
+      view.ortho_height = 100.0;
+      // The axis along which a box only just reaches into the view, and how far the view goes.
+      const Vec3d axis = view.orthographic ? view.right : view.forward;
+      const Vec3d middle = randomVector(random, 1.0) + (view.orthographic ? view.right * 50.0 : Vec3d());
+      Box box;
+      long double nearest = 0.0L;
+      for (int a = 0; a < 3; ++a) {
+        box.min[a] = static_cast<float>(middle[a]);
+        box.max[a] = box.min[a] + 1.0f;
+        nearest += static_cast<long double>(axis[a]) *
+                   (static_cast<long double>(axis[a] > 0.0 ? box.min[a] : box.max[a]) - view.eye[a]);
+      }
+      const double over = std::exp2(-46.0 + 36.0 * (seed % 100) / 100.0);
+      (view.orthographic ? view.aspect : view.z_far) =
+          static_cast<double>((nearest + over) / (view.orthographic ? 50.0L : 1.0L));
+      const long double reach =
+          (view.orthographic ? 50.0L * view.aspect : static_cast<long double>(view.z_far)) - nearest;
+      if (reach > 0x1p-58L * away) {
+        inside += 1;
+        std::uint8_t mask = kAllFrustumPlanes;
+        EXPECT_NE(classify(frustumOf(view), box, mask), FrustumSide::kOutside)
+            << away << " " << seed << " " << static_cast<double>(reach);
+      }
+    }
+  }
+  EXPECT_GT(inside, 2000u);
 }
 
 TEST(Camera, FrustumPlanesHaveUnitNormals) {

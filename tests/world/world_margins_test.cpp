@@ -209,6 +209,48 @@ TEST(WorldMargins, WhatStandsWhereItWasBakedIsNoTombstoneAndWhatWasMovedIs) {
   }
 }
 
+// A mirror lies in a wall that is joined with the floor, as double precision places it. Its clip plane cuts
+// the wall away, and the join, whose positions are rounded, lies on the plane's other side.
+TEST(WorldMargins, AJoinThatAClipPlaneCutsHidesNothing) {
+  World world;
+  const MeshId quad = [&world] {
+    const std::array<float, 12> corners{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const std::array<std::uint32_t, 6> indices{0, 1, 2, 0, 2, 3};
+    auto mesh = makeMesh(
+        {.positions = corners.data(), .vertex_count = 4, .indices = indices.data(), .index_count = 6},
+        {.double_sided = true});
+    return world.addMesh(std::move(*mesh));
+  }();
+  const auto place = [&](const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+    Mat4 matrix;
+    const Vec3d normal = cross(u, v);
+    for (int axis = 0; axis < 3; ++axis) {
+      matrix(axis, 0) = u[axis];
+      matrix(axis, 1) = v[axis];
+      matrix(axis, 2) = normal[axis];
+      matrix(axis, 3) = corner[axis];
+    }
+    return world.add({.mesh = quad, .world_from_mesh = matrix});
+  };
+  const double z = 0.1;  // of the wall, which single precision places elsewhere
+  const std::array<InstanceId, 3> members{place({-2, -2, z}, {4, 0, 0}, {0, 4, 0}),
+                                          place({-2, -2, z}, {4, 0, 0}, {0, 0, 1}),
+                                          place({-2, -2, z + 1}, {4, 0, 0}, {0, 0, 1})};
+  const InstanceId behind = world.add({.mesh = world.addMesh(boxMesh({{-0.5f, -0.5f, 5}, {0.5f, 0.5f, 6}}))});
+  WorldJoin join = world.prepareJoin(members);
+  ASSERT_EQ(join.instances.size(), members.size());
+  ASSERT_GT(join.rounding, 0.0);
+  world.use(std::move(join));
+  const View view = viewFrom({0, 0, -3}, {0, 0, 1});
+  for (const double beyond_wall : {-1e-3, 1e-12, 5e-10, 1e-8, 2e-8, 1e-6}) {
+    WorldCuller culler;
+    culler.setClipPlane({{0, 0, 1}, -(z + beyond_wall)});
+    culler.cull(world, view);
+    culler.cull(world, view);
+    EXPECT_EQ(keeps(culler, behind), beyond_wall > 0.0) << beyond_wall;
+  }
+}
+
 // Boxes reach over a clip plane by less than double precision can tell so far from the origin. The test
 // judges by long double, which on some machines is no more precise and could judge nothing.
 TEST(WorldMargins, NoBoxThatReachesOverAClipPlaneIsHiddenByItFarAway) {

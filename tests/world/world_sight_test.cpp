@@ -96,6 +96,32 @@ TEST(WorldSight, WhatIsIgnoredHidesNothing) {
   EXPECT_EQ(sight.look(story.world, {0, 0, 0}, {{0.25f, 0, -9}, {0.25f, 0, -9}}), Visibility::kHidden);
 }
 
+// The box is narrower than the numbers of world space so far from its origin, and a panel before it hides its
+// middle third.
+TEST(WorldSight, ABoxThatSticksOutOnBothSidesIsNotHiddenFarFromTheOriginOfWorldSpace) {
+  for (const int exponent : {30, 40, 44}) {
+    World world;
+    const Vec3d origin(std::ldexp(1.0, exponent), 0, 0);
+    world.setOrigin(origin);
+    const auto half = static_cast<float>(0.49 * std::ldexp(1.0, exponent - 53));
+    const std::array<float, 12> corners{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    const std::array<std::uint32_t, 6> indices{0, 1, 2, 0, 2, 3};
+    auto panel = makeMesh(
+        {.positions = corners.data(), .vertex_count = 4, .indices = indices.data(), .index_count = 6},
+        {.double_sided = true});
+    Mat4 matrix;
+    matrix(0, 0) = half / 6.0;
+    matrix(1, 1) = matrix(2, 2) = 10.0 * half / 3.0;
+    matrix(0, 3) = origin.x;
+    matrix(2, 3) = -1.0;
+    world.add({.mesh = world.addMesh(std::move(*panel)), .world_from_mesh = matrix});
+    WorldSight sight;
+    EXPECT_NE(sight.look(world, origin, {{-half, -1e-4f, -2.001f}, {half, 1e-4f, -2.0f}}),
+              Visibility::kHidden)
+        << "2^" << exponent;
+  }
+}
+
 TEST(WorldSight, HardQuestionsAreAnsweredWithMaybe) {
   Story story(allShapes());
   story.add(0, Mat4());

@@ -23,7 +23,8 @@ struct WorldSightSettings {
 // Answers for whole boxes, not for a few rays to them: kHidden only if no point of the box can be seen from
 // the point, which two crates together may bring about, or a hill. kVisible only if no other instance reaches
 // between them, so that all of the box can be seen. kPartial: otherwise, or the question is too hard: the
-// point is nearer to the box than about its size, or in it, or something is not finite.
+// point is nearer to the box than about its size, or in it, or something is not finite. Gaps between members
+// of a join count as closed as with the default of WorldCullerSettings::join_rounding.
 //
 // One question takes some microseconds more than a frustum's cull. Several threads may ask about one world,
 // each with a WorldSight of its own. Nothing is allocated once the storage has grown.
