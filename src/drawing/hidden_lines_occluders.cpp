@@ -24,7 +24,7 @@ HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
       box.extend(view.onScreen(between));
     }
   }
-  box.widen();
+  box.widen(view.view().orthographic ? triangle.reach : 1.0);
   return box;
 }
 

@@ -23,13 +23,14 @@ void HidingBox::extend(const HidingBox& box) {
   reciprocal_depth = std::max(reciprocal_depth, box.reciprocal_depth);
 }
 
-void HidingBox::widen() {
+void HidingBox::widen(double reach) {
   constexpr double kWider = 0x1p-40;
-  const double size = kWider * (std::abs(min_x) + std::abs(min_y) + std::abs(max_x) + std::abs(max_y) + 1.0);
-  min_x -= size;
-  min_y -= size;
-  max_x += size;
-  max_y += size;
+  const double wider =
+      kWider * (std::abs(min_x) + std::abs(min_y) + std::abs(max_x) + std::abs(max_y) + reach);
+  min_x -= wider;
+  min_y -= wider;
+  max_x += wider;
+  max_y += wider;
   reciprocal_depth += kWider * std::abs(reciprocal_depth);
 }
 

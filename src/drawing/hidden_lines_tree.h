@@ -19,7 +19,9 @@ struct HidingBox {
   static HidingBox none();
   void extend(const ScreenPoint& point);
   void extend(const HidingBox& box);
-  void widen();  // grows the box by more than the rounding of its corners
+  // Grows the box by more than the rounding of its corners and of lines behind it. `reach` is how far
+  // the corners are from the eye, in units of the screen: 1 in perspective.
+  void widen(double reach);
 };
 
 // A line on the screen.

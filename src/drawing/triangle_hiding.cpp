@@ -13,28 +13,25 @@ constexpr double kSideRounding = 0x1p-48;
 constexpr double kCameraRounding = 0x1p-46;
 constexpr double kCornerRounding = 0x1p-21;
 
-double flatCross(const Vec3d& p, const Vec3d& q) {
-  return p.x * q.y - p.y * q.x;
-}
-
 // Narrows [from, to] to where the line is on the inner side of the edge from p to q.
-bool insideEdge(const HidingTriangle& triangle, const Vec3d& p, const Vec3d& q, const HidableLine& line,
-                bool orthographic, double& from, double& to) {
-  const double size_a = l1Norm(line.a);
-  const double size_b = l1Norm(line.b);
-  if (!orthographic) {
-    const Vec3d inwards = cross(p, q);
-    const double wider = kSideRounding * triangle.reach * triangle.reach;
-    return narrow(dot(inwards, line.a) + wider * size_a, dot(inwards, line.b) + wider * size_b, from, to);
+bool insideEdge(const Vec3d& p, const Vec3d& q, const HidableLine& line, bool orthographic, double& from,
+                double& to) {
+  const Vec3d edge = q - p;
+  const double size_p = l1Norm(p);
+  const double size_q = l1Norm(q);
+  const Vec3d& nearer = size_p < size_q ? p : q;
+  if (orthographic) {
+    const double wider = kSideRounding * (std::abs(edge.x) + std::abs(edge.y));
+    const auto side = [&](const Vec3d& point) {
+      return edge.x * (point.y - nearer.y) - edge.y * (point.x - nearer.x) +
+             wider * std::max({size_p, size_q, l1Norm(point)});
+    };
+    return narrow(side(line.a), side(line.b), from, to);
   }
-  // The z component of (q - p) x (X - p), computed so that p, q and q, p give the same bits with opposite
-  // signs.
-  const auto side = [&](const Vec3d& point) {
-    return flatCross(p, q) + (p.y - q.y) * point.x + (q.x - p.x) * point.y;
-  };
-  const double wider = kSideRounding * triangle.reach;
-  return narrow(side(line.a) + wider * (triangle.reach + size_a),
-                side(line.b) + wider * (triangle.reach + size_b), from, to);
+  const Vec3d inwards = cross(nearer, edge);
+  const double wider = kSideRounding * std::min(size_p, size_q) * l1Norm(edge);
+  return narrow(dot(inwards, line.a) + wider * l1Norm(line.a), dot(inwards, line.b) + wider * l1Norm(line.b),
+                from, to);
 }
 
 // Narrows [from, to] to where the ray from the eye intersects the triangle at or beyond the near plane.
@@ -95,9 +92,9 @@ bool hiddenPart(const HidingTriangle& triangle, const HidableLine& line, const V
   from = line.from;
   to = line.to;
   const auto& [p, q, r] = triangle.corners;
-  if (!insideEdge(triangle, p, q, line, view.orthographic, from, to) ||
-      !insideEdge(triangle, q, r, line, view.orthographic, from, to) ||
-      !insideEdge(triangle, r, p, line, view.orthographic, from, to)) {
+  if (!insideEdge(p, q, line, view.orthographic, from, to) ||
+      !insideEdge(q, r, line, view.orthographic, from, to) ||
+      !insideEdge(r, p, line, view.orthographic, from, to)) {
     return false;
   }
   const Vec3d normal = normalized(cross(q - p, r - p));

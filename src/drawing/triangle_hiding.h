@@ -11,11 +11,20 @@
 // X, hence in t, also for triangles that reach behind the eye: nothing is clipped, and t is a share of the
 // line in space.
 //
-// Rounding. Camera points are off by some 2^-51 of their distance, so (p x q) . X is off by less than 2^-48
-// of |p| |q| |X|. The pyramid is widened by that, so that adjacent triangles leave no gap. Corners are
-// rounded to single precision, by up to 2^-24 of their largest coordinate in the scene, so a point nearer to
-// the plane than 2^-21 of it counts as in the plane. A line that begins or ends in the plane and is otherwise
-// behind it is hidden up to the plane; a line that lies in the plane is not hidden.
+// Rounding. Camera points are off by some 2^-51 of their distance from the eye; |X| is that distance,
+// interpolated between the ends of the line (all sizes are L1 norms). Take p for the nearer corner of an
+// edge.
+//   - In perspective (p x q) . X is computed as (p x (q - p)) . X. It is off by less than 2^-48 of
+//     |p| |q - p| |X|: in the image, by an angle of 2^-48 / sin(angle between the edge and the sight to p).
+//   - In an orthographic view (q - p) x (X - p) is computed, both on the screen. It is off by less than 2^-48
+//     of |q - p| times the largest of |p|, |q| and |X|: by 2^-48 of that distance on the screen.
+// Each edge is moved outwards by that, so that adjacent triangles leave no gap, also where a corner of one
+// lies on an edge of another. No edge moves farther because another corner is far away.
+//
+// Corners are rounded to single precision, by up to 2^-24 of their largest coordinate in the scene, so a
+// point nearer to the plane than 2^-21 of it, and 2^-46 of the distances from the eye, counts as in the
+// plane. A line that begins or ends in the plane and is otherwise behind it is hidden up to the plane; a line
+// that lies in the plane is not hidden.
 
 #include <array>
 

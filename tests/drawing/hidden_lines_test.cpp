@@ -18,13 +18,10 @@ namespace {
 
 using test::flatView;
 using test::kPage;
+using test::quad;
 using test::Sketch;
 using test::squareView;
 using test::Triangle;
-
-std::vector<Triangle> quad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
-  return {{a, b, c}, {a, c, d}};
-}
 
 // A wall across the view at a depth, from x0 to x1.
 std::vector<Triangle> wall(float x0, float x1, float depth) {

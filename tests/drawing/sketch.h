@@ -14,6 +14,10 @@ namespace sightline::test {
 using Triangle = std::array<Vec3f, 3>;
 inline constexpr double kPage = 100.0;
 
+inline std::vector<Triangle> quad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
+  return {{a, b, c}, {a, c, d}};
+}
+
 // A view along -z with the eye at zero and a square page whose borders are at 45 degrees.
 inline View squareView() {
   return squareView(1.0, 100.0);
