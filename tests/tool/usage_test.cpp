@@ -13,6 +13,17 @@ TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
   expectRefused({"walk", kCity}, "--output");
 }
 
+TEST(Tool, AnOptionWithNothingAfterItsEqualsSignTakesNoOtherWord) {
+  const TemporaryFolder folder;
+  const std::string scene = "demo:glass", file = folder.file("result.json");
+  expectRefused({"verify", scene, "--method", "depth-pyramid", "--json=", file}, "--json= needs a value");
+  expectRefused({"verify", scene, "--method", "depth-pyramid", "--proof="}, "--proof= needs a value");
+  expectRefused({"walk", scene, "-o=", folder.file("report")}, "-o= needs a value");
+  EXPECT_EQ(folder.entries(), 0u);
+  EXPECT_EQ(runTool({"info", scene, "--json=" + file}).code, 0);
+  EXPECT_TRUE(parse(contents(file)).is_object());
+}
+
 TEST(Tool, UnknownNamesAreAnsweredWithThoseThatExist) {
   expectRefused({"info", "demo:nothing"}, "city");
   expectRefused({"cull", kCity, "--method", "visibility"},

@@ -58,6 +58,17 @@ Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
   return Error{fmt::format("{} (see {})", error.what(), see)};
 }
 
+// The first option that ends in '=', empty if none does. CLI11 would take the next word for its value.
+std::string optionWithoutValue(int argc, char** argv) {
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i];
+    if (word.size() > 1 && word[0] == '-' && word.find('=') == word.size() - 1) {
+      return word;
+    }
+  }
+  return "";
+}
+
 int run(int argc, char** argv, AddCommands add_commands) {
   CLI::App app("Conservative visibility: what can be seen in a 3D scene, and what need not be drawn.",
                "sightline");
@@ -79,6 +90,9 @@ int run(int argc, char** argv, AddCommands add_commands) {
   }
   if (const std::string word = argv[1]; !word.empty() && word[0] != '-' && !isCommand(app, word)) {
     return fail(noSuchCommand(app, word).message);
+  }
+  if (const std::string word = optionWithoutValue(argc, argv); !word.empty()) {
+    return speaks(argc, argv) ? fail(word + " needs a value after the '='") : kOk;
   }
   try {
     app.parse(argc, argv);
