@@ -11,6 +11,7 @@
 
 #include "tools/sightline/bake/mpi_world.h"
 #include "tools/sightline/command_line/declarations.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/suggest.h"
 
@@ -22,7 +23,7 @@ int fail(std::string message) {
   while (!message.empty() && message.back() == ' ') {
     message.pop_back();
   }
-  fmt::print(stderr, "sightline: {}\n", message);
+  printNote("{}", message);
   return kBadUsage;
 }
 
@@ -114,6 +115,7 @@ int run(int argc, char** argv, AddCommands add_commands) {
 }  // namespace
 
 int runCommandLine(int argc, char** argv, AddCommands add_commands) {
+  openStandardStreams();
   try {
     return run(argc, argv, add_commands);
   } catch (const std::bad_alloc&) {
