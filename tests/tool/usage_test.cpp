@@ -68,6 +68,26 @@ TEST(Tool, NumbersOutOfRangeAreRefused) {
   }
 }
 
+TEST(Tool, NumbersAreDecimal) {
+  for (const std::string other : {"0x10", "010x", "+10", " 10", "0b1"}) {
+    expectRefused({"layers", "demo:glass", "--width", other}, "--width");
+    expectRefused({"layers", "demo:glass", "--passes", other}, "--passes");
+    expectRefused({"layers", "demo:glass", "--backdrop", "1," + other}, "--backdrop");
+    expectRefused({"cull", kCity, "--frames", other}, "--frames");
+  }
+  for (const std::string other : {"0x1p3", "0x10", "nan", "inf", "+1", "1,0"}) {
+    expectRefused({"layers", "demo:glass", "--crease", other}, "--crease");
+    expectRefused({"layers", "demo:glass", "--focus", other}, "--focus");
+  }
+  const TemporaryFolder folder;
+  const std::vector<std::string> draw{"layers", "demo:glass",         "--frames", "0",
+                                      "--svg",  folder.file("a.svg"), "--height", "8"};
+  EXPECT_EQ(runTool(joined(draw, {"--width", "0010"})).code, 0);
+  EXPECT_NE(contents(folder.file("a.svg")).find("width=\"10\""), std::string::npos);
+  EXPECT_EQ(toolJson({"cull", kCity, "--frames", "010"})["frames"][0]["frame"], 10) << "of ranges, too";
+  EXPECT_EQ(runTool(joined(draw, {"--crease", "07.5e0", "--width", "10"})).code, 0);
+}
+
 TEST(Tool, FramesBeyondThePathAreToldHowManyItHas) {
   for (const std::string command : {"cull", "verify"}) {
     for (const std::string bad : {"400", "400:500", "4294967295", "1000:2000:10"}) {

@@ -12,6 +12,7 @@
 #include "tools/sightline/bake/mpi_world.h"
 #include "tools/sightline/command_line/declarations.h"
 #include "tools/sightline/command_line/note.h"
+#include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/suggest.h"
 
@@ -85,6 +86,7 @@ int run(int argc, char** argv, AddCommands add_commands) {
       "sightline help COMMAND, or COMMAND --help, shows a command's options and examples.");
   Command chosen;
   add_commands(app, chosen);
+  readDecimalsAlone(app);
   if (argc < 2) {
     fmt::print("{}", overview(app));
     return kOk;
