@@ -71,6 +71,7 @@ void checkScene(const Scene& scene) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const ImportLimits limits{.triangles = 100'000,
+                            .vertices = 200'000,
                             .objects = 10'000,
                             .name_bytes = 1 << 20,
                             .elements = 1 << 12,

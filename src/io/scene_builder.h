@@ -14,12 +14,15 @@ namespace sightline::io {
 
 // What one file may grow to, so that a small hostile file cannot ask for all memory.
 struct ImportLimits {
-  std::uint64_t triangles = 100'000'000;     // of the scene, all instances counted
-  std::uint64_t objects = 16'000'000;        // of the scene
-  std::uint64_t name_bytes = 1 << 30;        // of all objects' names
-  std::uint64_t elements = 1 << 21;          // nodes, meshes, accessors, ... each
-  std::uint64_t implied_elements = 1 << 24;  // of an accessor without bytes behind it (zeros by definition)
-  std::uint64_t sparse_elements = 1 << 26;   // replaced ones, of all accessors together
+  std::uint64_t triangles = 100'000'000;  // of the scene, all instances counted
+  std::uint64_t vertices = 200'000'000;   // likewise, of a glTF file
+  std::uint64_t objects = 16'000'000;     // of the scene
+  std::uint64_t name_bytes = 1 << 30;     // of all objects' names
+  std::uint64_t elements = 1 << 21;       // nodes, meshes, accessors, ... each
+  // Elements of accessors without bytes behind them (zeros by definition): of an accessor, and as vertices of
+  // all instances together.
+  std::uint64_t implied_elements = 1 << 22;
+  std::uint64_t sparse_elements = 1 << 26;  // replaced ones, of all accessors together
   std::uint64_t camera_work = 1'000'000;  // of all animated cameras: frames times nodes above them, plus keys
 };
 

@@ -1,6 +1,8 @@
 #include "sightline/io/file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -47,6 +49,27 @@ TEST_F(Files, WhatCannotBeWrittenIsNamedAndLeavesNothing) {
       0u);
   fs::create_directories(folder.path() / "taken" / "by a folder");
   EXPECT_FALSE(writeFile(path("taken"), "x"));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST_F(Files, WhatLiesWhereAFileIsPreparedIsNotOverwritten) {
+  const std::string victim = folder.write("victim", "precious");
+  for (const char* form : {"{}.{}.unfinished", "{}.{}.0.unfinished"}) {
+    fs::create_symlink(victim, fmt::format(fmt::runtime(form), path("a.bin"), ::getpid()));
+  }
+  ASSERT_TRUE(writeFile(path("a.bin"), "new"));
+  EXPECT_EQ(readFile(path("a.bin")).value(), "new");
+  EXPECT_EQ(readFile(victim).value(), "precious");
+  EXPECT_FALSE(fs::is_symlink(path("a.bin")));
+  EXPECT_EQ(folder.entries(), 4u) << "the links stay, and nothing else is left over";
+}
+
+TEST_F(Files, NamesMayBeAsLongAsTheFileSystemAllows) {
+  const std::string longest(255, 'n');
+  ASSERT_TRUE(writeFile(path(longest), "x"));
+  EXPECT_EQ(readFile(path(longest)).value(), "x");
+  EXPECT_NE(writeFile(path(longest + "n"), "x").error().message.find("File name too long"),
+            std::string::npos);
   EXPECT_EQ(folder.entries(), 1u);
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "src/io/gltf/gltf.h"
 #include "tests/io/glb_builder.h"
 #include "tests/io/scene_checks.h"
 #include "tests/support/temporary_folder.h"
@@ -322,17 +323,38 @@ TEST(GltfHostile, DeepNestingIsRefusedQuickly) {
   EXPECT_TRUE(importGltf(in_text, "", "text.gltf")) << "brackets in a string are not nesting";
 }
 
-TEST(GltfHostile, AFewBytesCannotMultiplyIntoBillionsOfTriangles) {
+TEST(GltfHostile, AFewBytesCannotMultiplyIntoBillionsOfVertices) {
   Glb glb;
-  // 16 million corners without a byte behind them, drawn by every node.
-  glb.json["accessors"].push_back({{"componentType", test::kFloat}, {"count", 1 << 24}, {"type", "VEC3"}});
+  // 4 million corners without a byte behind them, drawn by every node.
+  glb.json["accessors"].push_back({{"componentType", test::kFloat}, {"count", 1 << 22}, {"type", "VEC3"}});
   const int mesh = glb.addMesh({Glb::primitive(0, -1, 5)});
   std::vector<int> roots;
   for (int i = 0; i < 1000; ++i) {
     roots.push_back(glb.addNode({{"name", "n"}, {"mesh", mesh}}));
   }
   glb.json["scenes"][0]["nodes"] = roots;
-  EXPECT_NE(errorOf(glb.bytes()).find("triangles"), std::string::npos);
+  EXPECT_NE(errorOf(glb.bytes()).find("node 1: up to here the scene has 8388608 vertices"),
+            std::string::npos);
+}
+
+TEST(GltfHostile, TheLimitsCountEveryInstance) {
+  Glb glb = oneTriangle();
+  glb.addNode({{"name", "second"}, {"mesh", 0}});
+  glb.addNode({{"name", "third"}, {"mesh", 0}});
+  glb.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const auto fault = [&](const io::ImportLimits& limits) {
+    const Result<Scene> scene = io::importGltf(glb.bytes(), "", "scene.glb", limits);
+    return scene ? std::string() : scene.error().message;
+  };
+  EXPECT_EQ(fault({.triangles = 3, .vertices = 9, .objects = 3, .implied_elements = 0}), "");
+  EXPECT_NE(fault({.triangles = 2}).find("node 2: up to here the scene has 3 objects, 3 triangles"),
+            std::string::npos);
+  EXPECT_NE(fault({.objects = 2}).find("node 2: up to here the scene has 3 objects"), std::string::npos);
+  EXPECT_NE(fault({.vertices = 8}).find("node 2: up to here the scene has 9 vertices"), std::string::npos);
+  glb.json["accessors"][0].erase("bufferView");
+  EXPECT_EQ(fault({.implied_elements = 9}), "");
+  EXPECT_NE(fault({.implied_elements = 8}).find("9 vertices, 9 of them without a buffer view"),
+            std::string::npos);
 }
 
 TEST(GltfHostile, ContainersThatLieAreRefused) {

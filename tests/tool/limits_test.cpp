@@ -88,6 +88,23 @@ TEST(Limits, TooLittleMemoryIsTold) {
   const Outcome outcome = runLimited("-v 700000", {"info", "demo:boxes?boxes=1000000"});
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_EQ(outcome.err, "sightline: out of memory: the scene or the result is too large for this machine\n");
+  // 60 million vertices, which the limits of a file allow, by 20,000 nodes with one mesh.
+  const TemporaryFolder folder;
+  std::string nodes, roots;
+  for (int i = 0; i < 20'000; ++i) {
+    nodes += std::string(i == 0 ? "" : ",") + R"({"mesh":0})";
+    roots += (i == 0 ? "" : ",") + std::to_string(i);
+  }
+  folder.write("s.bin", std::string(12 * 3000, '\0'));
+  const std::string file = folder.write(
+      "s.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
+                    R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+                    R"("accessors":[{"bufferView":0,"componentType":5126,"count":3000,"type":"VEC3"}],)"
+                    R"("bufferViews":[{"buffer":0,"byteLength":36000}],)"
+                    R"("buffers":[{"uri":"s.bin","byteLength":36000}]})");
+  const Outcome scene = runLimited("-v 700000", {"info", file});
+  EXPECT_EQ(scene.code, 2) << scene.err;
+  EXPECT_EQ(scene.err, "sightline: " + file + ": out of memory: the scene is too large for this machine\n");
 }
 
 TEST(Limits, PicturesThatAreTooLargeAreRefused) {

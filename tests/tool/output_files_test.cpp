@@ -83,6 +83,19 @@ TEST_F(OutputFiles, OfASceneThatNamesADeviceAreCheckedAllTheSame) {
   EXPECT_LE(outcome.errorLines(), 1) << outcome.err;
 }
 
+// Each reading of the scene's file is 4 MB, so 20,000 of them would take minutes.
+TEST_F(OutputFiles, AreCheckedQuicklyWhereASceneNamesAFileOften) {
+  std::string text = "mtllib paint.mtl\n";
+  for (int i = 0; i < 20'000; ++i) {
+    text += "mtllib " + std::string(i % 2 == 0 ? "" : "./") + "often.obj" + std::string(200, ' ') + "\n";
+  }
+  const std::string scene = folder_.write("often.obj", text);
+  const Outcome outcome = runProgram(
+      "/bin/sh", {"-c", "ulimit -t 10; exec \"$0\" \"$@\"", toolFile(), "info", scene, "--json", paint_});
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("the input itself"), std::string::npos) << outcome.err;
+}
+
 TEST_F(OutputFiles, AreNotThePathBesideTheScene) {
   const std::string beside = folder_.write("walk.path.json", kTwoFrames);
   expectKept({"cull", scene_, "--json", beside});

@@ -13,6 +13,17 @@ TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
   expectRefused({"walk", kCity}, "--output");
 }
 
+TEST(Tool, AnOptionWithNothingAfterItsEqualsSignTakesNoOtherWord) {
+  const TemporaryFolder folder;
+  const std::string scene = "demo:glass", file = folder.file("result.json");
+  expectRefused({"verify", scene, "--method", "depth-pyramid", "--json=", file}, "--json= needs a value");
+  expectRefused({"verify", scene, "--method", "depth-pyramid", "--proof="}, "--proof= needs a value");
+  expectRefused({"walk", scene, "-o=", folder.file("report")}, "-o= needs a value");
+  EXPECT_EQ(folder.entries(), 0u);
+  EXPECT_EQ(runTool({"info", scene, "--json=" + file}).code, 0);
+  EXPECT_TRUE(parse(contents(file)).is_object());
+}
+
 TEST(Tool, UnknownNamesAreAnsweredWithThoseThatExist) {
   expectRefused({"info", "demo:nothing"}, "city");
   expectRefused({"cull", kCity, "--method", "visibility"},
@@ -55,6 +66,26 @@ TEST(Tool, NumbersOutOfRangeAreRefused) {
        {"3:1", "2:2", "0:10:0", "400", "400:500", "-1:3", "a:b", "0:1:2:3", ":", "1:99999999999999"}) {
     expectRefused({"cull", kCity, "--frames", bad}, "--frames");
   }
+}
+
+TEST(Tool, NumbersAreDecimal) {
+  for (const std::string other : {"0x10", "010x", "+10", " 10", "0b1"}) {
+    expectRefused({"layers", "demo:glass", "--width", other}, "--width");
+    expectRefused({"layers", "demo:glass", "--passes", other}, "--passes");
+    expectRefused({"layers", "demo:glass", "--backdrop", "1," + other}, "--backdrop");
+    expectRefused({"cull", kCity, "--frames", other}, "--frames");
+  }
+  for (const std::string other : {"0x1p3", "0x10", "nan", "inf", "+1", "1,0"}) {
+    expectRefused({"layers", "demo:glass", "--crease", other}, "--crease");
+    expectRefused({"layers", "demo:glass", "--focus", other}, "--focus");
+  }
+  const TemporaryFolder folder;
+  const std::vector<std::string> draw{"layers", "demo:glass",         "--frames", "0",
+                                      "--svg",  folder.file("a.svg"), "--height", "8"};
+  EXPECT_EQ(runTool(joined(draw, {"--width", "0010"})).code, 0);
+  EXPECT_NE(contents(folder.file("a.svg")).find("width=\"10\""), std::string::npos);
+  EXPECT_EQ(toolJson({"cull", kCity, "--frames", "010"})["frames"][0]["frame"], 10) << "of ranges, too";
+  EXPECT_EQ(runTool(joined(draw, {"--crease", "07.5e0", "--width", "10"})).code, 0);
 }
 
 TEST(Tool, FramesBeyondThePathAreToldHowManyItHas) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <new>
 
 #include "sightline/io/import.h"
 #include "src/io/gltf/gltf_json.h"
@@ -144,6 +145,8 @@ Result<Scene> importGltf(std::string_view bytes, const std::string& base_dir,
   try {
     const Result<Document> document = load(bytes, base_dir, name_in_errors, limits);
     return document ? convert(*document) : Result<Scene>(document.error());
+  } catch (const std::bad_alloc&) {
+    return failure("{}: out of memory: the scene is too large for this machine", name_in_errors);
   } catch (const std::exception& exception) {
     return failure("{}: could not be read: {}", name_in_errors, exception.what());
   }

@@ -14,7 +14,7 @@ class ObjectAdder {
   Status checkLimits() {
     const ImportLimits& limits = document_.limits;
     std::uint64_t objects = 0;
-    std::uint64_t triangles = 0;
+    std::uint64_t triangles = 0, vertices = 0, implied_vertices = 0;
     std::uint64_t name_bytes = 0;
     for (const int node : tree_.visited) {
       const auto number = static_cast<std::size_t>(node);
@@ -28,6 +28,8 @@ class ObjectAdder {
       const std::uint64_t count = (*mesh)->primitives.size();
       objects += count;
       triangles += (*mesh)->triangles;
+      vertices += (*mesh)->vertices;
+      implied_vertices += (*mesh)->implied_vertices;
       name_bytes += count * (document_.file.nodes[number].name.size() + 24);
       if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
         return failure(
@@ -36,6 +38,12 @@ class ObjectAdder {
             "{} and {} are read",
             document_.name, node, objects, triangles, name_bytes, limits.objects, limits.triangles,
             limits.name_bytes);
+      }
+      if (vertices > limits.vertices || implied_vertices > limits.implied_elements) {
+        return failure(
+            "{}: node {}: up to here the scene has {} vertices, {} of them without a buffer view; at most {} "
+            "and {} are read",
+            document_.name, node, vertices, implied_vertices, limits.vertices, limits.implied_elements);
       }
     }
     return Success{};

@@ -29,6 +29,7 @@ class AccessorView {
   std::uint64_t count() const { return count_; }
   int componentType() const { return component_type_; }
   ElementType type() const { return type_; }
+  bool implied() const { return data_ == nullptr; }  // all is zero but for what a sparse accessor replaces
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
   double number(std::uint64_t element, int component) const;

@@ -1,5 +1,7 @@
 #include "src/io/gltf/gltf_primitives.h"
 
+#include <algorithm>
+
 namespace sightline::io {
 namespace {
 
@@ -40,6 +42,8 @@ Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
     }
     if (primitive->triangles > 0) {
       source.triangles += primitive->triangles;
+      source.vertices += primitive->vertices;
+      source.implied_vertices += primitive->positions->implied() ? primitive->vertices : 0;
       source.primitives.push_back(std::move(*primitive));
     }
   }
@@ -75,6 +79,7 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
   }
   const std::uint64_t strung = corners < 3 ? 0 : corners - 2;  // of a strip or fan
   source.triangles = source.mode == PrimitiveMode::kTriangles ? corners / 3 : strung;
+  source.vertices = std::min(corners, source.positions->count());
   return source;
 }
 

@@ -19,6 +19,7 @@ struct PrimitiveSource {
   const AccessorView* positions = nullptr;
   const AccessorView* indices = nullptr;  // nullptr: vertices in order
   std::uint64_t triangles = 0;
+  std::uint64_t vertices = 0;  // at most so many are used
 
   // Which places of the vertex sequence are the corners of a triangle.
   std::array<std::uint64_t, 3> cornersOf(std::uint64_t triangle) const;
@@ -26,7 +27,8 @@ struct PrimitiveSource {
 
 struct MeshSource {
   std::vector<PrimitiveSource> primitives;  // those with triangles
-  std::uint64_t triangles = 0;
+  std::uint64_t triangles = 0, vertices = 0;
+  std::uint64_t implied_vertices = 0;  // those of them without bytes in the file
 };
 
 // Opens each mesh once, however many nodes show it.

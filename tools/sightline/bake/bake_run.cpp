@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "tools/sightline/bake/part_queue.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/signals.h"
 
 namespace sightline::tool {
@@ -310,7 +310,7 @@ class FirstBaker {
   // Aborts, since other processes may be in the middle of a message and cannot be ended otherwise.
   void fail(const Error& error) {
     if (world_.size() > 1) {
-      fmt::print(stderr, "sightline: {}\n", error.message);
+      printNote("{}", error.message);
       world_.abort(2);
     }
   }
@@ -373,7 +373,6 @@ void endInterrupted(ProgressBar& bar, Checkpoint& checkpoint, std::uint64_t done
   bar.say(fmt::format(
       "interrupted; {} of the {} parts known so far are {}{}; the same command with --resume goes on", done,
       known, kept ? "kept" : "kept, as far as they could be written", share));
-  std::fflush(stderr);
   std::_Exit(interruptedExitCode());  // threads may be in the middle of parts and cannot be joined
 }
 

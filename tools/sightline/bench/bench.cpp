@@ -16,6 +16,7 @@
 #include "tools/sightline/bench/scene_bench.h"
 #include "tools/sightline/command_line/command_line.h"
 #include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/exact/exact_cache.h"
@@ -91,8 +92,8 @@ bool noneMissed(const std::vector<BenchRecord>& records) {
   for (const BenchRecord& record : records) {
     for (const SettingRecord& run : record.runs) {
       if (run.missed > 0 && !run.setting.approximate()) {
-        fmt::print(stderr, "sightline: {}: {} ({}) has culled {} visible objects; see: sightline verify\n",
-                   record.scene_name, methodName(run.setting), optionsText(run.setting), run.missed);
+        printNote("{}: {} ({}) has culled {} visible objects; see: sightline verify", record.scene_name,
+                  methodName(run.setting), optionsText(run.setting), run.missed);
         none = false;
       }
     }
@@ -160,7 +161,7 @@ Result<ExactCache> openCache(const BenchOptions& options) {
   if (usual) {
     return usual;
   }
-  fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", usual.error().message);
+  printNote("exact visibility is not kept: {}", usual.error().message);
   return ExactCache::open("");
 }
 

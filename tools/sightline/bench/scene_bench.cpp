@@ -1,13 +1,12 @@
 #include "tools/sightline/bench/scene_bench.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 #include <utility>
 
 #include "src/base/stopwatch.h"
 #include "tools/sightline/bench/advice.h"
 #include "tools/sightline/bench/machine.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/exact/exact_several_boxes.h"
 
@@ -118,7 +117,7 @@ ExactSettings SceneBench::exactSettings() const {
 void SceneBench::keep(const ExactKey& key, const ExactObjects& frame) {
   const Status kept = cache_.keep(key, frame);
   if (!kept && !told_) {
-    fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", kept.error().message);
+    printNote("exact visibility is not kept: {}", kept.error().message);
     told_ = true;
   }
 }
@@ -148,7 +147,7 @@ void SceneBench::draw(const SceneView& scene, std::vector<BenchRun>& runs, const
                       const PictureOptions& size, BenchRecord& record) const {
   Result<Renderer> renderer = Renderer::create(scene, size.width, size.height);
   if (!renderer) {
-    fmt::print(stderr, "sightline: nothing is drawn: {}\n", renderer.error().message);
+    printNote("nothing is drawn: {}", renderer.error().message);
     return;
   }
   record.device = renderer->device();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "tools/sightline/command_line/declarations.h"
 #include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/command_line/suggest.h"
 
@@ -39,6 +40,30 @@ void addDecimalOption(CLI::App& command, const std::string& name, double& value,
 void addDecimalOption(CLI::App& command, const std::string& name, std::optional<double>& value, double min,
                       double max, const std::string& help) {
   command.add_option(name, value, help)->check(decimal(min, max));
+}
+
+void readDecimalsAlone(CLI::App& app) {
+  const CLI::Validator whole(
+      [](std::string& word) {
+        if (word.empty() || word.find_first_not_of("0123456789") != std::string::npos) {
+          return fmt::format("'{}' is not a whole number", word);
+        }
+        word.erase(0, std::min(word.find_first_not_of('0'), word.size() - 1));
+        return std::string();
+      },
+      "");
+  const CLI::Validator number(
+      [](std::string& word) {
+        return parseDecimal(word) ? std::string() : fmt::format("'{}' is not a number", word);
+      },
+      "");
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    for (CLI::Option* option : command->get_options()) {
+      if (const std::string type = typeOf(*option); type == "UINT" || type == "FLOAT") {
+        option->transform(type == "UINT" ? whole : number);
+      }
+    }
+  }
 }
 
 CLI::Validator isNotEmpty() {

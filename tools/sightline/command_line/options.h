@@ -27,6 +27,9 @@ void addDecimalOption(CLI::App& command, const std::string& name, double& value,
 void addDecimalOption(CLI::App& command, const std::string& name, std::optional<double>& value, double min,
                       double max, const std::string& help);
 
+// Makes all options of numbers that were added read decimals alone. CLI11 would read 010 as 8, and 0x10.
+void readDecimalsAlone(CLI::App& app);
+
 // The types of values, as --help, the manual and the completion name them.
 inline constexpr const char *kFileType = "FILE", *kFolderType = "DIR";
 

@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "tools/sightline/command_line/note.h"
 
 namespace sightline::tool {
 namespace {
@@ -30,13 +31,13 @@ ProgressBar::ProgressBar(std::string stage, double begun)
 
 ProgressBar::~ProgressBar() {
   if (shown_) {
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    printOnStderr(kClearLine);
   }
 }
 
 void ProgressBar::say(const std::string& line) {
-  fmt::print(stderr, "{}sightline: {}\n", shown_ ? "\r\033[K" : "", line);
+  printOnStderr(shown_ ? kClearLine : "");
+  printNote("{}", line);
   shown_ = false;
 }
 
@@ -56,9 +57,8 @@ void ProgressBar::update(double done, const std::string& note) {
   std::string right =
       done > begun_ ? remaining(elapsed * (1.0 - done) / (done - begun_)) + " left" : std::string();
   right += note.empty() || right.empty() ? note : ", " + note;
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} % {}", stage_, "", filled, "", kWidth - filled,
-             100.0 * done, right);
-  std::fflush(stderr);
+  printOnStderr(fmt::format("{}{} [{:#<{}}{:.<{}}] {:3.0f} % {}", kClearLine, stage_, "", filled, "",
+                            kWidth - filled, 100.0 * done, right));
 }
 
 }  // namespace sightline::tool

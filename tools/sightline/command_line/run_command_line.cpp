@@ -11,6 +11,8 @@
 
 #include "tools/sightline/bake/mpi_world.h"
 #include "tools/sightline/command_line/declarations.h"
+#include "tools/sightline/command_line/note.h"
+#include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/suggest.h"
 
@@ -22,7 +24,7 @@ int fail(std::string message) {
   while (!message.empty() && message.back() == ' ') {
     message.pop_back();
   }
-  fmt::print(stderr, "sightline: {}\n", message);
+  printNote("{}", message);
   return kBadUsage;
 }
 
@@ -58,6 +60,17 @@ Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
   return Error{fmt::format("{} (see {})", error.what(), see)};
 }
 
+// The first option that ends in '=', empty if none does. CLI11 would take the next word for its value.
+std::string optionWithoutValue(int argc, char** argv) {
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i];
+    if (word.size() > 1 && word[0] == '-' && word.find('=') == word.size() - 1) {
+      return word;
+    }
+  }
+  return "";
+}
+
 int run(int argc, char** argv, AddCommands add_commands) {
   CLI::App app("Conservative visibility: what can be seen in a 3D scene, and what need not be drawn.",
                "sightline");
@@ -73,12 +86,16 @@ int run(int argc, char** argv, AddCommands add_commands) {
       "sightline help COMMAND, or COMMAND --help, shows a command's options and examples.");
   Command chosen;
   add_commands(app, chosen);
+  readDecimalsAlone(app);
   if (argc < 2) {
     fmt::print("{}", overview(app));
     return kOk;
   }
   if (const std::string word = argv[1]; !word.empty() && word[0] != '-' && !isCommand(app, word)) {
     return fail(noSuchCommand(app, word).message);
+  }
+  if (const std::string word = optionWithoutValue(argc, argv); !word.empty()) {
+    return speaks(argc, argv) ? fail(word + " needs a value after the '='") : kOk;
   }
   try {
     app.parse(argc, argv);
@@ -100,6 +117,7 @@ int run(int argc, char** argv, AddCommands add_commands) {
 }  // namespace
 
 int runCommandLine(int argc, char** argv, AddCommands add_commands) {
+  openStandardStreams();
   try {
     return run(argc, argv, add_commands);
   } catch (const std::bad_alloc&) {

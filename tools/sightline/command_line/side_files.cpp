@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string_view>
 
 #include "sightline/io/file.h"
@@ -43,32 +44,42 @@ void forEachLine(const std::string& file, Act&& act) {
 
 // A name may contain spaces, or follow options or other names. So the whole value and each of its words are
 // taken.
-void addNames(const std::string& value, std::vector<std::string>& names) {
-  names.push_back(value);
+void addNames(const std::string& value, std::set<std::string>& names) {
+  names.insert(value);
   for (std::size_t begin = 0; begin < value.size();) {
     const std::size_t end = std::min(value.find_first_of(" \t", begin), value.size());
-    names.push_back(value.substr(begin, end - begin));
+    names.insert(value.substr(begin, end - begin));
     begin = end + 1;
   }
 }
 
-std::vector<std::string> namesInObj(const std::string& file) {
-  std::vector<std::string> libraries;
+// The file that a name in a scene's file means.
+std::string fileBeside(const std::string& scene, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return (fs::path(scene).parent_path() / name).string();
+}
+
+std::set<std::string> namesInObj(const std::string& file) {
+  std::set<std::string> names;
   forEachLine(file, [&](const std::string& keyword, const std::string& value) {
     if (keyword == "mtllib") {
-      addNames(value, libraries);
+      addNames(value, names);
     }
   });
+  // Each library is read once, by whatever names and however often it is named.
+  std::set<fs::path> libraries;
+  for (const std::string& name : names) {
+    std::error_code ignored;
+    libraries.insert(fs::weakly_canonical(fileBeside(file, name), ignored));
+  }
   constexpr std::array<std::string_view, 5> kPictures{"bump", "disp", "decal", "refl", "norm"};
-  std::vector<std::string> names = libraries;
-  for (const std::string& library : libraries) {
-    forEachLine((fs::path(file).parent_path() / library).string(),
-                [&](const std::string& keyword, const std::string& value) {
-                  if (keyword.starts_with("map_") ||
-                      std::find(kPictures.begin(), kPictures.end(), keyword) != kPictures.end()) {
-                    addNames(value, names);
-                  }
-                });
+  for (const fs::path& library : libraries) {
+    forEachLine(library.string(), [&](const std::string& keyword, const std::string& value) {
+      if (keyword.starts_with("map_") ||
+          std::find(kPictures.begin(), kPictures.end(), keyword) != kPictures.end()) {
+        addNames(value, names);
+      }
+    });
   }
   return names;
 }
@@ -77,18 +88,18 @@ std::vector<std::string> namesInObj(const std::string& file) {
 
 std::vector<std::string> sideFilesOf(const std::string& scene) {
   const std::string extension = lower(fs::path(scene).extension().string());
-  std::vector<std::string> names;
+  std::set<std::string> names;
   if (extension == ".gltf" || extension == ".glb") {
     const Result<std::string> bytes = readFile(scene);
-    names = bytes ? io::filesNamedByGltf(*bytes) : names;
+    const std::vector<std::string> named = bytes ? io::filesNamedByGltf(*bytes) : std::vector<std::string>();
+    names.insert(named.begin(), named.end());
   } else if (extension == ".obj") {
     names = namesInObj(scene);
   }
   std::vector<std::string> files;
-  for (std::string& name : names) {
-    std::replace(name.begin(), name.end(), '\\', '/');
+  for (const std::string& name : names) {
     std::error_code ignored;
-    const std::string file = (fs::path(scene).parent_path() / name).string();
+    const std::string file = fileBeside(scene, name);
     if (fs::is_regular_file(file, ignored)) {
       files.push_back(file);
     }

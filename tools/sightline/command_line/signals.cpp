@@ -9,10 +9,10 @@
 #include <csignal>
 #include <vector>
 
+#include "tools/sightline/command_line/note.h"
+
 namespace sightline::tool {
 namespace {
-
-constexpr const char* kClearLine = "\r\033[K";  // erases a progress bar
 
 // What the handler reads. It is changed only while a SignalGuard defers signals.
 struct Ending {

@@ -7,6 +7,7 @@
 
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/file.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/suggest.h"
 
 namespace sightline::tool {
@@ -45,7 +46,7 @@ Result<CameraPath> parseCameraPathFile(std::string_view text, const std::string&
     return error;
   }
   for (const UnknownKey& unknown : unknown_keys) {
-    fmt::print(stderr, "sightline: {}: {}\n", file, describe(unknown));
+    printNote("{}: {}", file, describe(unknown));
   }
   return path;
 }

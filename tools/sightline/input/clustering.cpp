@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/io/point_json.h"
+#include "tools/sightline/command_line/note.h"
 
 namespace sightline::tool {
 
@@ -34,8 +35,7 @@ Clustering divideIntoClusters(Scene& scene, std::uint32_t max_triangles, double 
                         ? scene.object_names[object]
                         : fmt::format("{}, cluster {}", scene.object_names[object], c - first));
   }
-  fmt::print(stderr, "sightline: {} objects are answered by {} clusters\n", clustering.objects,
-             found.clusters.size());
+  printNote("{} objects are answered by {} clusters", clustering.objects, found.clusters.size());
   scene.object_names = std::move(names);
   scene.indices = std::exchange(found.indices, {});
   scene.objects = std::exchange(found.clusters, {});

@@ -12,6 +12,7 @@
 #include "src/base/stopwatch.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/input/camera_path_file.h"
 #include "tools/sightline/input/cell_path.h"
@@ -59,7 +60,7 @@ Result<CameraPath> defaultCameraPath(const std::string& scene_name, const Scene&
   if (const std::string beside = cameraPathBeside(scene_name); !beside.empty()) {
     Result<CameraPath> path = readCameraPathFile(beside);
     if (path) {
-      fmt::print(stderr, "sightline: using the camera path {}\n", beside);
+      printNote("using the camera path {}", beside);
     }
     return path;
   }
@@ -88,10 +89,10 @@ CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parall
     closing = {width, closed.slack, closed.margin(), std::move(scene.indices), std::move(scene.objects)};
     scene.indices = std::move(closed.indices);
     scene.objects = std::move(closed.objects);
-    fmt::print(stderr,
-               "sightline: cracks narrower than {} m count as closed: {} vertices are joined, edges are led "
-               "through {}, nothing by more than {:.3g} m\n",
-               width, closed.merged, closed.bent, closed.slack);
+    printNote(
+        "cracks narrower than {} m count as closed: {} vertices are joined, edges are led "
+        "through {}, nothing by more than {:.3g} m",
+        width, closed.merged, closed.bent, closed.slack);
   }
   return closing;
 }
@@ -321,9 +322,7 @@ std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const s
     }
     unusable = database.error().message;
   }
-  fmt::print(stderr,
-             "sightline: the occluder database '{}' of the baked file is not used ({}); building one\n", name,
-             unusable);
+  printNote("the occluder database '{}' of the baked file is not used ({}); building one", name, unusable);
   return nullptr;
 }
 
@@ -417,10 +416,9 @@ void CullingData::noteUnknownSets() const {
     sum.broken += stats.broken;
   }
   if (sum.outside + sum.beyond_near + sum.broken > 0) {
-    fmt::print(
-        stderr,
-        "sightline: {} of {} look-ups in the baked file gave everything: {} outside its cells, {} with a "
-        "near plane that clips beyond its {} m, {} broken\n",
+    printNote(
+        "{} of {} look-ups in the baked file gave everything: {} outside its cells, {} with a "
+        "near plane that clips beyond its {} m, {} broken",
         sum.outside + sum.beyond_near + sum.broken, sum.finds, sum.outside, sum.beyond_near,
         baked_->record().near_distance, sum.broken);
   }

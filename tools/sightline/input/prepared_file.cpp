@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 
 #include "src/base/array_bytes.h"
 #include "src/pvs/query/mapped_file.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/output_files.h"
 
 #define XXH_INLINE_ALL
@@ -150,7 +150,7 @@ void PreparedFile::add(const std::string& name, LargeVector<std::byte> bytes) {
 }
 
 void PreparedFile::refuse(const std::string& reason) const {
-  fmt::print(stderr, "sightline: {} is written anew: {}\n", name_, reason);
+  printNote("{} is written anew: {}", name_, reason);
 }
 
 void PreparedFile::keep() {
@@ -182,7 +182,7 @@ void PreparedFile::keep() {
   pieces.insert(pieces.begin(), {{reinterpret_cast<const char*>(&head), sizeof(head)},
                                  {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Row)}});
   if (const Status kept = saveFile(name_, pieces); !kept) {
-    fmt::print(stderr, "sightline: what was prepared is not kept: {}\n", kept.error().message);
+    printNote("what was prepared is not kept: {}", kept.error().message);
     return;
   }
   // From now on the sections lie in the file, and not in memory besides.

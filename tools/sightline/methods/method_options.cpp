@@ -11,6 +11,7 @@
 #include <functional>
 #include <limits>
 
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/input/doors.h"
@@ -499,8 +500,7 @@ void noteUseless(const MethodOptions& options, const std::vector<Setting>& setti
     const bool given = options.texts[i] != options.defaults[i];
     if (given && std::none_of(settings.begin(), settings.end(),
                               [&](const Setting& setting) { return option.belongs(setting); })) {
-      fmt::print(stderr, "sightline: --{} changes nothing here: {}\n", option.name,
-                 uselessBecause(option, settings));
+      printNote("--{} changes nothing here: {}", option.name, uselessBecause(option, settings));
     }
   }
 }

@@ -17,6 +17,7 @@
 #include "sightline/render/renderer.h"
 #include "tools/sightline/command_line/command_line.h"
 #include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/threads.h"
@@ -266,9 +267,8 @@ Result<ExitCode> walkScene(const WalkOptions& options, std::vector<Setting> sett
     fmt::print("report: {}\n", (std::filesystem::path(options.folder) / "index.html").string());
   }
   if (interrupted) {
-    fmt::print(stderr,
-               "sightline: walk was interrupted after {} of {} frames; the report in {} is of these\n", done,
-               walk.frames.size(), options.folder);
+    printNote("walk was interrupted after {} of {} frames; the report in {} is of these", done,
+              walk.frames.size(), options.folder);
     return static_cast<ExitCode>(interruptedExitCode());
   }
   return record->differing() == 0 ? kOk : kCheckFailed;

@@ -1,0 +1,27 @@
+#pragma once
+
+// Notes and errors on stderr. Whether they can be written changes nothing else: what fails here is ignored.
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+namespace sightline::tool {
+
+// Opens /dev/null in the place of each standard stream that the process was started without. Otherwise the
+// first files that it opens would take these places, and notes would be written into them. Standard output
+// stays one that cannot be written to, so that a result is not lost unnoticed.
+void openStandardStreams();
+
+inline constexpr const char* kClearLine = "\r\033[K";  // erases a progress bar
+
+void printOnStderr(std::string_view text);
+
+// Prints a line that begins with "sightline: ".
+template <typename... Args>
+void printNote(fmt::format_string<Args...> format, Args&&... args) {
+  printOnStderr("sightline: " + fmt::format(format, std::forward<Args>(args)...) + "\n");
+}
+
+}  // namespace sightline::tool
