@@ -19,6 +19,7 @@
 #include "tools/sightline/bake/bake_run.h"
 #include "tools/sightline/bake/bake_warning.h"
 #include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/output_files.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
@@ -341,7 +342,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
     }
   }
   if (const std::string warning = bakeWarning(*file, *facts); !warning.empty()) {
-    fmt::print(stderr, "sightline: warning: {}: {}\n", options.output, warning);
+    printNote("warning: {}: {}", options.output, warning);
   }
   if (options.common.textOnStdout()) {
     fmt::print("{}", bakeText(report, options.output, *file, *facts));
@@ -367,20 +368,18 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   } else if (checkpoint) {
     if (Result<KeptParts> kept = checkpoint->begin(planned->bake.hash())) {
       if (const std::string loss = lossText(options.partsFile(), *kept); !loss.empty()) {
-        fmt::print(stderr, "sightline: {}{}\n", kept->damaged ? "warning: " : "", loss);
+        printNote("{}{}", kept->damaged ? "warning: " : "", loss);
       }
       parts = std::move(kept->parts);
     } else {
       own = kept.error();
     }
     if (planned->update && !planned->update->difference.empty()) {
-      fmt::print(stderr, "sightline: --update {}: was baked with {}; all is baked anew\n", options.update,
-                 planned->update->difference);
+      printNote("--update {}: was baked with {}; all is baked anew", options.update,
+                planned->update->difference);
     }
     if (planned->without_doors) {
-      fmt::print(stderr,
-                 "sightline: --update {}: had doors, and no --doors are given now: there will be none\n",
-                 options.update);
+      printNote("--update {}: had doors, and no --doors are given now: there will be none", options.update);
     }
     keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
                              options.partsFile()));
@@ -422,7 +421,7 @@ Result<ExitCode> runBake(const BakeOptions& options) {
     if (world.size() == 1) {
       throw;
     }
-    fmt::print(stderr, "sightline: process {}: {}\n", world.rank(), error.what());
+    printNote("process {}: {}", world.rank(), error.what());
     world.abort(kBadUsage);
   }
 }
