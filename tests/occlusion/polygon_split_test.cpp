@@ -219,6 +219,21 @@ TEST(PolygonSplit, AnOldEdgeIsNotEmbeddedInAPlaneOfAnotherWidth) {
   }
 }
 
+TEST(PolygonSplit, TheCutOfALongEdgeIsAsGoodAsItsNearerEnd) {
+  // A ribbon from 2 m to about 1e15 m, where neighbouring numbers are an eighth of a metre apart.
+  for (const bool near_first : {true, false}) {
+    PolygonStack stack;
+    const double z0 = near_first ? -2.0 : -1.2345e15 / 1.1, z1 = near_first ? -1.2345e15 / 1.1 : -2.0;
+    const Piece ribbon = push(stack, std::vector<Vec3d>{{-1, 0, z0}, {1, 0, z0}, {1, 0, z1}, {-1, 0, z1}});
+    const SplitResult result = stack.split(ribbon, {{0, 0, 1}, 3.3}, {}, 0.0);
+    ASSERT_EQ(result.side, Side::kBoth);
+    for (const Corner& corner : stack.of(result.front)) {
+      EXPECT_TRUE(corner.position.z == -2.0 || std::abs(corner.position.z + 3.3) < 1e-14)
+          << corner.position.z;
+    }
+  }
+}
+
 TEST(PolygonSplit, PolygonsThatWouldGetTooManyCornersAreReported) {
   Random random(1);
   PolygonStack stack;

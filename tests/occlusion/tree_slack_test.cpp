@@ -211,5 +211,33 @@ TEST(TreeSlack, TheSharedPartOfAPolygonKeepsTheOpenEdgesOfItsRest) {
   EXPECT_GE(seen, 100) << "the test's own premise";
 }
 
+TEST(TreeSlack, ABoxThatReachesVeryFarIsCutWhereItIsNear) {
+  // Two walls with a gap of 9 mm, a low one before them, and a box from 2 m to 6.6e15 m, seen through the
+  // gap.
+  for (const float side : {1.0f, -1.0f}) {
+    const float gap = side * 0.00895909f, end = side * 1.5f, edge = side * 2.0f, far = -6621980005766468.0f;
+    Facade facade;
+    const auto addWall = [&](float x0, float x1, float top, float z) {
+      const auto [low, high] = std::minmax(x0, x1);
+      facade.addRectangle({low, -2}, {high, top}, z);
+    };
+    addWall(-end, 0, 2, -1);
+    addWall(gap, edge, 2, -1);
+    addWall(-side, side, 0.18f, -0.9f);
+    View view = test::viewFrom({-0.25 * static_cast<double>(side), 0, 0}, {0, 0, -1});
+    view.tan_half_fovy = 1.5;
+    view.z_far = INFINITY;
+    const float near = side * 0.930937052f;
+    Box box;
+    box.extend({near, -1, -2});
+    box.extend({near + side * 0.05f, 1, far});
+    const double eye = view.eye.x;
+    const double depth = (static_cast<double>(near) - eye) / (0.5 * static_cast<double>(gap) - eye);
+    const Vec3d point(static_cast<double>(near), 0.95, -depth);
+    ASSERT_TRUE(showsPoint(facade.scene, view, {{near, -1, -2}, {near, 1, -2}, {near, 1, -8}}, point));
+    expectNotHidden(facade.scene, view, box, side > 0 ? "right" : "left");
+  }
+}
+
 }  // namespace
 }  // namespace sightline

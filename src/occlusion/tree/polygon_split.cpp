@@ -1,6 +1,7 @@
 #include "src/occlusion/tree/polygon_split.h"
 
 #include <cmath>
+#include <utility>
 
 namespace sightline::occlusion {
 namespace {
@@ -72,7 +73,11 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
     return result;
   }
   result.side = Side::kBoth;
+  // Rounding grows with the distance of the corner from which the cut is measured, so it is the nearer one.
   const auto cut = [&](std::uint32_t i, std::uint32_t j) {
+    if (l1Norm(corners[first + j].position) < l1Norm(corners[first + i].position)) {
+      std::swap(i, j);
+    }
     const Vec3d& a = corners[first + i].position;
     const Vec3d& b = corners[first + j].position;
     return a + (b - a) * (distance_[i] / (distance_[i] - distance_[j]));
