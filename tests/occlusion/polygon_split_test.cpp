@@ -187,18 +187,49 @@ TEST(PolygonSplit, APartStaysOnTheSideOfThePlaneThatMadeItsEdge) {
 TEST(PolygonSplit, AnOldEdgeInThePlaneIsEmbeddedWhenItBoundsThePolygonTowardsTheSameSide) {
   // The square's edge at x = 1, made by plane 0 (x = 1); plane 1 is the same, plane 2 turned.
   std::vector<Plane> planes{{{1, 0, 0}, -1.0}, {{1, 0, 0}, -1.0}, {{-1, 0, 0}, 1.0}};
+  const std::vector<double> tolerances(planes.size(), 1e-6);
   for (const std::size_t by : {1u, 2u}) {
     PolygonStack stack;
     stack.planes = &planes;
+    stack.tolerances = &tolerances;
     const Piece square = push(stack, kSplitSquare);
     stack.corners[1].edge = PlaneRef::make(0, false);
     const SplitResult result = stack.split(square, planes[by], PlaneRef::make(by, false), 0.0);
     EXPECT_EQ(result.side, by == 1 ? Side::kBack : Side::kFront);
     EXPECT_TRUE(stack.of(square)[1].embedded) << by;
-    EXPECT_EQ(stack.of(square)[1].edge.plane(), by);
-    EXPECT_EQ(stack.of(square)[1].edge.flipped(), by == 2);
+    EXPECT_EQ(stack.of(square)[1].edge.bits, PlaneRef::make(0, false).bits) << "it keeps its own plane";
     for (const std::size_t other : {0u, 2u, 3u}) {
       EXPECT_FALSE(stack.of(square)[other].embedded);
+    }
+  }
+}
+
+TEST(PolygonSplit, AnOldEdgeIsNotEmbeddedInAPlaneOfAnotherWidth) {
+  const std::vector<Plane> planes(2, Plane{{1, 0, 0}, -1.0});
+  for (const double width : {0.0, 0.9e-6, 1e-6 + 1e-13, 1.1e-6}) {
+    const std::vector<double> tolerances{1e-6, width};
+    PolygonStack stack;
+    stack.planes = &planes;
+    stack.tolerances = &tolerances;
+    stack.equal_tolerance = 1e-12;
+    const Piece square = push(stack, kSplitSquare);
+    stack.corners[1].edge = PlaneRef::make(0, false);
+    EXPECT_EQ(stack.split(square, planes[1], PlaneRef::make(1, false), 0.0).side, Side::kBack);
+    EXPECT_EQ(stack.of(square)[1].embedded, width == 1e-6 + 1e-13) << width;
+  }
+}
+
+TEST(PolygonSplit, TheCutOfALongEdgeIsAsGoodAsItsNearerEnd) {
+  // A ribbon from 2 m to about 1e15 m, where neighbouring numbers are an eighth of a metre apart.
+  for (const bool near_first : {true, false}) {
+    PolygonStack stack;
+    const double z0 = near_first ? -2.0 : -1.2345e15 / 1.1, z1 = near_first ? -1.2345e15 / 1.1 : -2.0;
+    const Piece ribbon = push(stack, std::vector<Vec3d>{{-1, 0, z0}, {1, 0, z0}, {1, 0, z1}, {-1, 0, z1}});
+    const SplitResult result = stack.split(ribbon, {{0, 0, 1}, 3.3}, {}, 0.0);
+    ASSERT_EQ(result.side, Side::kBoth);
+    for (const Corner& corner : stack.of(result.front)) {
+      EXPECT_TRUE(corner.position.z == -2.0 || std::abs(corner.position.z + 3.3) < 1e-14)
+          << corner.position.z;
     }
   }
 }

@@ -6,10 +6,9 @@ namespace sightline::occlusion {
 
 bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& volumes, PolygonStack& stack,
                  Fragment& front, Fragment& back) {
-  const PlaneRef cut_plane = PlaneRef::make(volumes.planes.size(), false);
+  const PlaneRef cut_plane = volumes.addPlane(plane);  // until the cut has its shadow plane
   const std::size_t stack_size = stack.corners.size();
-  // A copy is split: if the split is not used, the fragment must not keep edges named after a plane that is
-  // not made.
+  // A copy is split: if the split is not used, the fragment must not keep edges that were marked by it.
   const Piece copy{static_cast<std::uint32_t>(stack_size), fragment.piece.count};
   for (std::uint32_t i = 0; i < copy.count; ++i) {
     const Corner corner = stack.corners[fragment.piece.first + i];
@@ -34,7 +33,7 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
         volumes.eye.shadowPlane(corners[at].position, corners[(at + 1) % corners.size()].position, sine);
     if (sine > 0x1p-12) {
       // split() takes the front part to lie in front of the named plane, i.e. behind its other side.
-      volumes.addPlane(shadow.flipped());
+      volumes.planes.back() = shadow.flipped();
       for (const Piece& piece : {parts.front, parts.back}) {
         for (Corner& corner : stack.of(piece)) {
           corner.embedded = false;  // there is no tree yet whose planes edges could lie in
@@ -45,6 +44,8 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
       return true;
     }
   }
+  volumes.planes.pop_back();
+  volumes.tolerances.pop_back();
   stack.corners.resize(stack_size);
   return false;
 }

@@ -11,8 +11,9 @@ namespace sightline::occlusion {
 struct Fragment {
   Piece piece;
   std::uint32_t volume = 0;
-  // What the fragment was before anything but the ends of open edges cut it. Its open edges are drawn in for
-  // all of its parts, also for those that a cut has separated from the edge.
+  // The edges that bound the shadow of each of its parts, also of those that a cut has separated from the
+  // edge: those of the fragment before anything but the ends of open edges cut it, and those of its occluder
+  // that it lacked then.
   Piece outline{};
 };
 

@@ -74,7 +74,8 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
     if (isOpen(k) != isOpen(k - 1)) {
       const Vec3d change = pointBefore(k) + along * (isOpen(k) ? -candidate.inset : candidate.inset);
       corners.push_back({change, isOpen(k) ? inset : on_line, false, isOpen(k)});
-      cuts.push_back({static_cast<std::uint32_t>(volumes.size()), {along, -dot(along, change)}});
+      cuts.push_back(
+          {static_cast<std::uint32_t>(volumes.size()), {along, -dot(along, change)}, inset, on_line});
     }
   }
   return true;

@@ -37,7 +37,8 @@ struct Corner {
 // of the open part does not make a gap along the shared part.
 struct EdgeCut {
   std::uint32_t volume = 0;
-  Plane plane;  // across the edge, relative to the eye
+  Plane plane;              // across the edge, relative to the eye
+  PlaneRef inset, on_line;  // the planes of the edge's open parts and of its shared ones
 };
 
 struct OcclusionVolume {

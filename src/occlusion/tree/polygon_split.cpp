@@ -1,5 +1,8 @@
 #include "src/occlusion/tree/polygon_split.h"
 
+#include <cmath>
+#include <utility>
+
 namespace sightline::occlusion {
 namespace {
 
@@ -15,17 +18,14 @@ bool PolygonStack::agrees(const Corner& corner, const Plane& plane, PlaneRef ref
   if (corner.open || !named(corner.edge)) {
     return false;
   }
+  const double width = (*tolerances)[ref.plane()];
+  if (!(width > 0.0) || std::abs((*tolerances)[corner.edge.plane()] - width) > equal_tolerance) {
+    return false;
+  }
   const Vec3d& stored = (*planes)[corner.edge.plane()].normal;
   const double cosine = dot(stored, plane.normal);
   const bool same_way = corner.edge.flipped() == (oriented.flipped() != ref.flipped());
   return same_way ? cosine > 0.0 : cosine < 0.0;
-}
-
-void PolygonStack::embed(Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const {
-  if (agrees(corner, plane, ref, oriented)) {
-    corner.edge = oriented;
-    corner.embedded = true;
-  }
 }
 
 SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, double scale,
@@ -65,14 +65,19 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
     if (named(ref) && result.side != Side::kOnPlane) {
       for (std::uint32_t i = 0; i < n; ++i) {
         if (sign_[i] == 0 && sign_[next(i)] == 0) {
-          embed(corners[first + i], plane, ref, any_front ? ref.other() : ref);
+          Corner& corner = corners[first + i];
+          corner.embedded |= agrees(corner, plane, ref, any_front ? ref.other() : ref);
         }
       }
     }
     return result;
   }
   result.side = Side::kBoth;
+  // Rounding grows with the distance of the corner from which the cut is measured, so it is the nearer one.
   const auto cut = [&](std::uint32_t i, std::uint32_t j) {
+    if (l1Norm(corners[first + j].position) < l1Norm(corners[first + i].position)) {
+      std::swap(i, j);
+    }
     const Vec3d& a = corners[first + i].position;
     const Vec3d& b = corners[first + j].position;
     return a + (b - a) * (distance_[i] / (distance_[i] - distance_[j]));
@@ -88,7 +93,7 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
       if (si > 0 || (si == 0 && sj > 0)) {
         corners.push_back(corner);
       } else if (si == 0 && sj == 0) {
-        embed(corner, plane, ref, oriented);
+        corner.embedded |= named(ref) && agrees(corner, plane, ref, oriented);
         corners.push_back(corner);
       } else if (si == 0) {
         corners.push_back({corner.position, oriented, named(ref), false});

@@ -41,20 +41,24 @@ class PolygonStack {
   // lie in. A corner counts as on the plane within kOnPlane * (relative * magnitude + scale); a polygon
   // reaches a side when a corner is four times as far there.
   //
-  // New edges, and old ones that lie in the plane and bound the polygon towards the same side, get ref as
-  // their plane and are marked as embedded. A polygon with an edge that was made by this very plane is on the
-  // side where that edge has it, whatever rounding says of its corners. Polygons that would get too many
-  // corners are not split but reported as kOnPlane with overflow set.
+  // New edges get ref as their plane and are marked as embedded. An old edge keeps its plane, and is marked
+  // if it lies in this one, bounds the polygon towards the same side, and both planes are equally wide. A
+  // polygon with an edge that was made by this very plane is on the side where that edge has it, whatever
+  // rounding says of its corners. Polygons that would get too many corners are not split but reported as
+  // kOnPlane with overflow set.
   SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale, double relative = 1.0);
 
-  // The planes that PlaneRefs of corners name; needed when split() is given named planes.
+  // The planes that PlaneRefs of corners name, and their VolumeBuilder::tolerances, of which those that
+  // differ by no more than equal_tolerance count as equal; needed when split() is given named planes.
   const std::vector<Plane>* planes = nullptr;
+  const std::vector<double>* tolerances = nullptr;
+  double equal_tolerance = 0.0;
   bool overflow = false;
 
  private:
-  // Whether the corner's edge bounds its polygon as the plane of the given name and side does.
+  // Whether an edge that lies in the plane bounds its polygon as the plane of the given name and side does,
+  // and what is near to it goes to both sides as it does at the edge's own plane.
   bool agrees(const Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const;
-  void embed(Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const;
 
   std::array<double, kMaxCorners> distance_{};
   std::array<std::int8_t, kMaxCorners> sign_{};

@@ -26,36 +26,62 @@ void TreeBuilder::addFrustum(const View& view) {
   tree_->frustum_nodes = 4;
 }
 
-// True if the piece lacks this open edge and comes closer to it than slack and rounding allow. The edge's
-// plane is inset by 32 slack and, for rounding, by 64 times kOnPlane; a quarter of the latter is enough for a
-// piece that another plane has cut.
-bool TreeBuilder::reachesBefore(Piece piece, const Corner& open_edge) const {
-  const Plane& stored = tree_->volumes.planes[open_edge.edge.plane()];
+// True if the shadow of a piece comes closer to an edge that the piece lacks than slack and rounding allow.
+// The plane of an open edge is inset by 32 slack and, for rounding, by 64 times kOnPlane; a quarter of the
+// latter is enough for a piece that another plane has cut. The plane of a shared edge has a width instead.
+// Beyond an edge of the piece, its shadow reaches as far as the plane there is wide.
+bool TreeBuilder::comesNear(Piece piece, const Corner& edge) const {
+  const VolumeBuilder& volumes = tree_->volumes;
+  const auto distanceTo = [&](const Corner& e, const Vec3d& p) {
+    return volumes.planes[e.edge.plane()].evaluate(p) * (e.edge.flipped() ? -1.0 : 1.0);
+  };
+  const auto width = [&](const Corner& e, const Vec3d& p) {
+    return volumes.tolerances[e.edge.plane()] * (volumes.eye.orthographic ? 1.0 : l1Norm(p));
+  };
   constexpr double kRoom = 48.0;
-  bool in_front = false;
-  for (const Corner& corner : stack_.of(piece)) {
-    if (corner.edge.samePlane(open_edge.edge)) {
-      return false;
+  const auto isNear = [&](const Vec3d& p) {
+    const double room = kRoom * kOnPlane * (l1Norm(p) + tree_->on_plane_scale);
+    const double tolerance = width(edge, p);
+    return distanceTo(edge, p) > (tolerance > 0.0 ? -tolerance : room);
+  };
+  const std::span<const Corner> corners = stack_.of(piece);
+  const std::size_t n = corners.size();
+  // Whether an end of edge `of`, moved with the edge along the line to the other neighbour of that end, is
+  // near.
+  const auto isNearBeyond = [&](const Corner& of, const Vec3d& end, const Vec3d& neighbour) {
+    const double by = width(of, end), inside = -distanceTo(of, neighbour);
+    return by > 0.0 && (!(inside > 0.0) || isNear(end + (end - neighbour) * (by / inside)));
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3d &before = corners[(i + n - 1) % n].position, &from = corners[i].position,
+                &to = corners[(i + 1) % n].position, &after = corners[(i + 2) % n].position;
+    if (isNear(from) || isNearBeyond(corners[i], from, before) || isNearBeyond(corners[i], to, after)) {
+      return true;
     }
-    const double distance = stored.evaluate(corner.position) * (open_edge.edge.flipped() ? -1.0 : 1.0);
-    in_front = in_front || distance > kRoom * kOnPlane * (l1Norm(corner.position) + tree_->on_plane_scale);
   }
-  return in_front;
+  return false;
 }
 
 // Makes the subtree for one lit piece of a fragment: a node for each edge, with shadow behind all of them.
 Link TreeBuilder::occlusionVolume(Piece piece, const Fragment& fragment, std::uint32_t depth) {
   TreeData& tree = *tree_;
-  // A cut may have taken an open edge from the piece and left parts of it closer to the edge than its inset.
   edges_.clear();
   for (const Corner& corner : stack_.of(piece)) {
     if (!corner.embedded || !limits_.modified) {
       edges_.push_back(corner);
     }
   }
-  for (const Corner& corner : stack_.of(fragment.outline)) {
-    if (corner.open && reachesBefore(piece, corner)) {
-      edges_.push_back(corner);
+  // A cut may have taken an edge from the piece and left parts of it near to the edge, or wholly before its
+  // plane.
+  for (const Corner& edge : stack_.of(fragment.outline)) {
+    const auto corners = stack_.of(piece);
+    const auto own = std::find_if(corners.begin(), corners.end(),
+                                  [&](const Corner& corner) { return corner.edge.samePlane(edge.edge); });
+    if (own != corners.end() && own->edge.flipped() != edge.edge.flipped()) {
+      return Link::out();
+    }
+    if (own == corners.end() && comesNear(piece, edge)) {
+      edges_.push_back(edge);
       edges_.back().embedded = false;
     }
   }
@@ -72,8 +98,11 @@ Link TreeBuilder::occlusionVolume(Piece piece, const Fragment& fragment, std::ui
   for (const Corner& edge : edges_) {
     const Plane& stored = tree.volumes.planes[edge.edge.plane()];
     const Plane plane = edge.edge.flipped() ? stored.flipped() : stored;
-    tree.nodes.push_back(
-        {plane, tree.volumes.tolerances[edge.edge.plane()], edge.embedded, Link::out(), link});
+    // What comes to an embedded edge has passed a plane that is as wide, or nearly: all of it counts as
+    // behind.
+    const double tolerance =
+        tree.volumes.tolerances[edge.edge.plane()] + (edge.embedded ? 2.0 * stack_.equal_tolerance : 0.0);
+    tree.nodes.push_back({plane, tolerance, edge.embedded, Link::out(), link});
     tree.node_plane.push_back(edge.edge);
     link = Link::node(tree.nodes.size() - 1);
   }
@@ -132,6 +161,38 @@ void TreeBuilder::filterDown(const Fragment& fragment) {
   stack_.corners.resize(stack_size);
 }
 
+// Sets the outline of a fragment of a polygon: its own edges, and those of the polygon that it lacks, unless
+// it has another part of the same edge. Where an edge is shared in part, the cut itself keeps the shared part
+// away from the open one, whose plane would open the seam.
+void TreeBuilder::addOutline(Fragment& fragment, Piece whole, std::span<const EdgeCut> cuts) {
+  const auto has = [&](Piece piece, PlaneRef edge) {
+    const auto corners = stack_.of(piece);
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](const Corner& corner) { return corner.edge.bits == edge.bits; });
+  };
+  const auto isOtherPart = [&](PlaneRef edge) {
+    return std::any_of(cuts.begin(), cuts.end(), [&](const EdgeCut& cut) {
+      return (edge.bits == cut.inset.bits && has(fragment.piece, cut.on_line)) ||
+             (edge.bits == cut.on_line.bits && has(fragment.piece, cut.inset));
+    });
+  };
+  Piece& outline = fragment.outline;
+  outline = {static_cast<std::uint32_t>(stack_.corners.size()), 0};
+  const auto add = [&](Corner corner) {
+    stack_.corners.push_back(corner);
+    ++outline.count;
+  };
+  for (std::uint32_t i = 0; i < fragment.piece.count; ++i) {
+    add(stack_.corners[fragment.piece.first + i]);
+  }
+  for (std::uint32_t i = 0; i < whole.count; ++i) {
+    const PlaneRef edge = stack_.corners[whole.first + i].edge;
+    if (!has(outline, edge) && !isOtherPart(edge)) {
+      add(stack_.corners[whole.first + i]);
+    }
+  }
+}
+
 // Makes one fragment for each volume, or several where parts of its edges are open.
 void TreeBuilder::makeFragments() {
   VolumeBuilder& volumes = tree_->volumes;
@@ -141,8 +202,8 @@ void TreeBuilder::makeFragments() {
     const Piece piece{static_cast<std::uint32_t>(stack_.corners.size()), volume.corner_count};
     const auto first = volumes.corners.begin() + volume.first_corner;
     stack_.corners.insert(stack_.corners.end(), first, first + volume.corner_count);
-    const std::size_t first_fragment = fragments_.size();
-    fragments_.push_back({piece, v, {}});
+    const std::size_t first_fragment = fragments_.size(), first_cut = next_cut;
+    fragments_.push_back({piece, v, piece});
     for (; next_cut < volumes.cuts.size() && volumes.cuts[next_cut].volume == v; ++next_cut) {
       const Plane plane = volumes.cuts[next_cut].plane;
       const std::size_t before = fragments_.size();
@@ -154,8 +215,10 @@ void TreeBuilder::makeFragments() {
         }
       }
     }
-    for (std::size_t f = first_fragment; f < fragments_.size(); ++f) {
-      fragments_[f].outline = fragments_[f].piece;
+    if (next_cut > first_cut) {
+      for (std::size_t f = first_fragment; f < fragments_.size(); ++f) {
+        addOutline(fragments_[f], piece, std::span(volumes.cuts).subspan(first_cut, next_cut - first_cut));
+      }
     }
   }
 }
@@ -179,6 +242,8 @@ bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets,
   }
   stack_.overflow = false;
   stack_.planes = &tree.volumes.planes;
+  stack_.tolerances = &tree.volumes.tolerances;
+  stack_.equal_tolerance = 8.0 * kOnPlane * (view.orthographic ? tree.volumes.reach : 1.0);
   stack_.corners.clear();
   fragments_.clear();
   makeFragments();

@@ -35,11 +35,12 @@ class TreeBuilder {
 
   void addFrustum(const View& view);
   void makeFragments();
+  void addOutline(Fragment& fragment, Piece whole, std::span<const EdgeCut> cuts);
   Link& at(Place place);
   void filterDown(const Fragment& fragment);
   void followToLeaf(Waiting piece, const Fragment& fragment);
   Link occlusionVolume(Piece piece, const Fragment& fragment, std::uint32_t depth);
-  bool reachesBefore(Piece piece, const Corner& open_edge) const;
+  bool comesNear(Piece piece, const Corner& edge) const;
 
   TreeData* tree_ = nullptr;
   TreeLimits limits_;

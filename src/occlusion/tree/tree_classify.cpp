@@ -96,10 +96,9 @@ SplittingQuery::Parts SplittingQuery::partsOf(const TreeNode& node, Piece piece)
     }
   };
   const Eye& eye = tree_->volumes.eye;
-  if (node.tolerance == 0.0 && !eye.orthographic) {
+  if (node.tolerance == 0.0 && !overlapping_) {
     return partsIn(split(node, piece, 0.0));
   }
-  // The parts on the two sides of a shared edge overlap; for orthographic eyes see BoxImage::cut.
   const double width = overlapWidth(node.tolerance, reach_, eye, tree_->on_plane_scale);
   const double front_from = node.repeated ? width : -width;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -165,6 +164,9 @@ State SplittingQuery::classify(const TreeData& tree, const BoxQuestion& question
   // The scale is that of the box's nearest point: a corner far away may be the end of an edge that passes
   // close by.
   on_plane_scale_ = box.nearest() + tree.on_plane_scale;
+  // As many times as far as the nearest point, rounding reaches a quarter of kEdgeMargin after some 100 cuts.
+  constexpr double kFar = 16.0;
+  overlapping_ = tree.volumes.eye.orthographic || reach_ > kFar * box.nearest();
   stack_.overflow = false;
   State state = State::kNothing;
   for (int axis = 0; axis < 3 && state != State::kPartial; ++axis) {

@@ -66,6 +66,9 @@ class SplittingQuery {
   const BoxQuestion* question_ = nullptr;
   double reach_ = 0.0;           // l1Norm() of the box's farthest corner, metres
   double on_plane_scale_ = 0.0;  // see PolygonStack::split; that of the tree is added
+  // The parts overlap at every plane, not at those of shared edges alone. It is so where the rounding of far
+  // corners may exceed the inset of a near edge, and for orthographic eyes.
+  bool overlapping_ = false;
   PolygonStack stack_;
   std::vector<Waiting> waiting_;
 };

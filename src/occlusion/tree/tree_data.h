@@ -29,8 +29,8 @@ inline constexpr std::uint32_t kMaxTreeDepth = 1500;
 // A shadow plane; the occluder that made it lies behind. Positions are relative to the eye.
 struct TreeNode {
   Plane plane;             // unit normal
-  double tolerance = 0.0;  // VolumeBuilder::tolerances
-  bool repeated = false;   // the plane is on the path already: all that comes here counts as behind
+  double tolerance = 0.0;  // VolumeBuilder::tolerances, and a little more where repeated
+  bool repeated = false;   // the plane or its like is on the path: all that comes here counts as behind
   Link front, back;
 };
 
