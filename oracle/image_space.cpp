@@ -1,6 +1,7 @@
 #include "oracle/image_space.h"
 
 #include "src/math/longest_axis.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 namespace {
@@ -26,15 +27,19 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
   if (!view.orthographic) {
     return;
   }
-  axis_ = math::longestAxis(abs(view.forward));
+  sight_ = scene::sightDirection(view);
+  forward_exponent_ = std::min(forward_exponent_, lowestExponent(sight_));
+  exact_forward_ = wholeOf(view.forward, forward_exponent_);
+  exact_sight_ = wholeOf(sight_, forward_exponent_);
+  axis_ = math::longestAxis(abs(sight_));
   const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
   const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0) * (1.0 + shift));
-  last_ = std::ldexp(view.forward[axis_] > 0.0 ? 1.0 : -1.0, size);
+  last_ = std::ldexp(sight_[axis_] > 0.0 ? 1.0 : -1.0, size);
   exponent_ = std::min(exponent_, size);
   exact_eye_ = wholeOf(view.eye, exponent_);
   const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
-  right_ = Vec3d{view.right[i], view.right[j], 0.0} / view.forward[axis_];
-  up_ = Vec3d{view.up[i], view.up[j], 0.0} / view.forward[axis_];
+  right_ = Vec3d{view.right[i], view.right[j], 0.0} / sight_[axis_];
+  up_ = Vec3d{view.up[i], view.up[j], 0.0} / sight_[axis_];
   forward_ = {0.0, 0.0, 1.0 / last_};
 }
 
@@ -42,21 +47,21 @@ Vec3d ImageSpace::fromEye(std::uint32_t position) const {
   return this->position(position) - view_.eye;
 }
 
-// Projects along the viewing direction onto the plane across `axis_`, times forward[axis_].
+// Projects along the lines of sight onto the plane across `axis_`, times sight_[axis_].
 Vec3d ImageSpace::project(const Vec3d& from_eye, double last) const {
   const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
-  const Vec3d& f = view_.forward;
-  return {from_eye[i] * f[axis_] - from_eye[axis_] * f[i], from_eye[j] * f[axis_] - from_eye[axis_] * f[j],
+  const Vec3d& s = sight_;
+  return {from_eye[i] * s[axis_] - from_eye[axis_] * s[i], from_eye[j] * s[axis_] - from_eye[axis_] * s[j],
           last};
 }
 
 // The same without rounding; all coordinates, the last one too, are times 2^-(exponent + forward_exponent_).
 WholeVec ImageSpace::exactProject(const WholeVec& from_eye, int exponent) const {
   const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
-  const Whole &f = component(exact_forward_, axis_), &depth = component(from_eye, axis_);
+  const Whole &s = component(exact_sight_, axis_), &depth = component(from_eye, axis_);
   const Whole last = wholeOf(last_, exponent + forward_exponent_);
-  return {component(from_eye, i) * f - depth * component(exact_forward_, i),
-          component(from_eye, j) * f - depth * component(exact_forward_, j), last};
+  return {component(from_eye, i) * s - depth * component(exact_sight_, i),
+          component(from_eye, j) * s - depth * component(exact_sight_, j), last};
 }
 
 RoundedVec ImageSpace::direction(std::uint32_t position) const {
@@ -124,11 +129,11 @@ ViewRay ImageSpace::lineOfSight(const Vec3d& direction) const {
   if (!view_.orthographic) {
     return {view_.eye, direction};
   }
-  const double scale = last_ / (direction.z * view_.forward[axis_]);
+  const double scale = last_ / (direction.z * sight_[axis_]);
   Vec3d across{};
   across[(axis_ + 1) % 3] = direction.x * scale;
   across[(axis_ + 2) % 3] = direction.y * scale;
-  return {view_.eye + across - view_.forward * dot(across, view_.forward), view_.forward};
+  return {view_.eye + across - sight_ * dot(across, view_.forward), sight_};
 }
 
 ViewRay ImageSpace::ray(const Vec3d& direction) const {

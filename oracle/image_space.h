@@ -4,7 +4,7 @@
 //
 // A point of the image is a direction d, a vector of three coordinates whose length is of no meaning. In a
 // perspective view, d is the vector from the eye to a point in space. In an orthographic view, d consists of
-// the two coordinates that remain when space is projected along the viewing direction, and of a constant. In
+// the two coordinates that remain when space is projected along the lines of sight, and of a constant. In
 // both, a straight line of the image is a plane n . d = 0, and the image of a triangle is the cone of its
 // corners' directions, also where some of them lie behind the eye.
 //
@@ -82,8 +82,8 @@ class ImageSpace {
   }
 
   // The line of sight in a direction before the eye, from the plane through the eye on. It follows from the
-  // eye and the viewing direction alone, as the exact direction does: axes may be off by single-precision
-  // rounding.
+  // eye and, in an orthographic view, scene::sightDirection() alone, as the exact direction does: axes may be
+  // off by single-precision rounding.
   ViewRay lineOfSight(const Vec3d& direction) const;
   // About the same line from the near plane, by the view's axes.
   ViewRay ray(const Vec3d& direction) const;
@@ -98,10 +98,15 @@ class ImageSpace {
 
   View view_;
   std::span<const Vec3f> positions_, more_;
-  int exponent_ = 0;          // of exact coordinates in space
-  int forward_exponent_ = 0;  // of the exact viewing direction
+  int exponent_ = 0;  // of exact coordinates in space
+  // Of the two exact directions below.
+  int forward_exponent_ = 0;
   WholeVec exact_eye_, exact_forward_;
-  int axis_ = 2;  // orthographic: the axis that the viewing direction is nearest to
+  // Orthographic: the direction of the lines of sight, and the axis that it is nearest to. Depths are
+  // measured along the view's forward, which is another direction where the axes are not quite perpendicular.
+  Vec3d sight_{};
+  WholeVec exact_sight_;
+  int axis_ = 2;
   // Orthographic: the last coordinate of every direction. A power of two about as large as the picture,
   // beside which no coordinate of a direction is lost.
   double last_ = 1.0;

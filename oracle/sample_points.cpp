@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "oracle/split_mix.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 namespace {
@@ -79,7 +80,7 @@ Vec3d SamplePoints::point(ObjectId id, std::uint32_t sample, const View& view) c
   Triangle t;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     t = triangle(object, triangleAt(object, random.unit()));
-    const Vec3d direction = view.orthographic ? view.forward : t.a - view.eye;
+    const Vec3d direction = view.orthographic ? scene::sightDirection(view) : t.a - view.eye;
     if (scene_.materialOf(object).double_sided || dot(cross(t.b - t.a, t.c - t.a), direction) < 0.0) {
       break;
     }
@@ -96,7 +97,7 @@ Vec3d SamplePoints::besideEdge(ObjectId id, std::uint32_t sample, const View& vi
   const auto side = static_cast<std::size_t>(random.unit() * 3.0);
   const Vec3d from = corners[side], to = corners[(side + 1) % 3];
   const Vec3d point = from + (to - from) * random.unit();
-  const Vec3d sight = view.orthographic ? view.forward : point - view.eye;
+  const Vec3d sight = view.orthographic ? scene::sightDirection(view) : point - view.eye;
   const double distance = view.orthographic ? 1.0 : length(sight);
   const double away = distance * std::pow(10.0, -2.0 - 5.0 * random.unit());
   return point + normalized(cross(to - from, sight)) * (random.unit() < 0.5 ? away : -away);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "sightline/scene/camera.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -28,7 +29,8 @@ inline ViewRay rayThrough(const View& view, double x, double y) {
   if (view.orthographic) {
     const double half = 0.5 * view.ortho_height;
     const Vec3d start = view.eye + view.right * (x * half * view.aspect) + view.up * (y * half);
-    return {start + view.forward * view.z_near, view.forward};
+    const Vec3d sight = scene::sightDirection(view);
+    return {start + sight * (view.z_near - depthOf(view, start)), sight};
   }
   const Vec3d direction =
       view.forward + view.right * (x * view.tan_half_fovy * view.aspect) + view.up * (y * view.tan_half_fovy);
@@ -47,7 +49,8 @@ inline ViewRay rayOfPixel(const View& view, std::uint32_t column, std::uint32_t 
 inline ViewRay rayTo(const View& view, const Vec3d& point) {
   const double depth = depthOf(view, point);
   if (view.orthographic) {
-    return {point - view.forward * (depth - view.z_near), view.forward};
+    const Vec3d sight = scene::sightDirection(view);
+    return {point - sight * (depth - view.z_near), sight};
   }
   const Vec3d direction = (point - view.eye) / depth;
   return {view.eye + direction * view.z_near, direction};

@@ -299,8 +299,15 @@ bool PolygonFinisher::cornersDescribe(std::span<const std::uint32_t> corners, do
     const bool from_above = uy > 0.0 || (uy == 0.0 && ux > 0.0);
     const bool to_above = vy > 0.0 || (vy == 0.0 && vx > 0.0);
     turns += !from_above && to_above ? 1 : 0;
+    // Each vertex between two corners stands for a point of the edge, in the same order: the nearest one that
+    // is not before the last. Otherwise a boundary that runs back beside itself would pass for an edge.
+    const double size = std::sqrt(ux * ux + uy * uy);
+    double reached = 0.0;
     for (std::size_t k = after(corners[i]); k != end; k = after(k)) {
-      slack = std::max(slack, std::abs(distanceToLine(points_[k], a, b)));
+      const double along = (ux * (points_[k].x - a.x) + uy * (points_[k].y - a.y)) / size;
+      reached = std::clamp(along, reached, size);
+      const double beside = std::abs(distanceToLine(points_[k], a, b));
+      slack = std::max(slack, along == reached ? beside : std::hypot(beside, along - reached));
     }
   }
   return turns == 1 && slack <= 2.0 * tolerance_;

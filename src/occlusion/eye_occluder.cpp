@@ -26,7 +26,7 @@ double sharedEdgeTolerance(const Eye& eye, const EyeOccluder& occluder, const Ou
 }  // namespace
 
 Plane Eye::shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const {
-  const Vec3d normal = orthographic ? cross(forward, q - p) : cross(p, q);
+  const Vec3d normal = orthographic ? cross(sight, q - p) : cross(p, q);
   const double l = length(normal);
   const double size = orthographic ? length(q - p) : length(p) * length(q);
   sine = size > 0.0 ? l / size : 0.0;
@@ -56,7 +56,7 @@ std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, 
   seen.centroid = Vec3d(occluder.centroid) - eye.position;
   const double height =
       -dot(occluder.plane.normal, Vec3d(set.vertices[occluder.first_vertex]) - eye.position);
-  const double facing = eye.orthographic ? -dot(occluder.plane.normal, eye.forward) : height;
+  const double facing = eye.orthographic ? -dot(occluder.plane.normal, eye.sight) : height;
   seen.flipped = facing < 0.0;
   if (seen.flipped && !occluder.double_sided) {
     return std::nullopt;

@@ -9,19 +9,26 @@
 #include "sightline/geometry/tolerance.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/scene/camera.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline::occlusion {
 
 // The eye as occluders need it: a point, or a direction for orthographic views.
 struct Eye {
   Vec3d position;
-  Vec3d forward;
+  Vec3d forward;  // along which depths are measured
+  Vec3d sight;    // orthographic: the direction of the lines of sight, scene::sightDirection()
   double near = 0.0;
   bool orthographic = false;
 
   Eye() = default;
+  // view: one that validate() accepts.
   explicit Eye(const View& view)
-      : position(view.eye), forward(view.forward), near(view.z_near), orthographic(view.orthographic) {}
+      : position(view.eye),
+        forward(view.forward),
+        sight(view.orthographic ? scene::sightDirection(view) : view.forward),
+        near(view.z_near),
+        orthographic(view.orthographic) {}
 
   // Returns the plane through the eye and the line from p to q, with unit normal, such that a polygon with
   // the edge p -> q, counter-clockwise as seen from the eye, lies behind it. sine: becomes that of the angle

@@ -11,6 +11,9 @@ namespace {
 constexpr double kUnitSlack = 0x1p-20;
 // Minimum cosine between two axes at which they no longer count as perpendicular.
 constexpr double kSkewCosine = 0x1p-20;
+// Directions of unit length that differ by less are the same up to rounding: a sixteenth of kOnPlane, which
+// allows for it at any distance.
+constexpr double kSameDirection = 0x1p-48;
 
 bool isPositive(double value) {
   return std::isfinite(value) && value > 0.0;
@@ -81,6 +84,12 @@ const char* makeUsable(View& view) {
   }
   view = usable;
   return nullptr;
+}
+
+Vec3d sightDirection(const View& view) {
+  const Vec3d across = cross(view.right, view.up);
+  const Vec3d sight = across / dot(across, view.forward);
+  return maxComponent(abs(sight - view.forward)) <= kSameDirection ? view.forward : sight;
 }
 
 }  // namespace sightline::scene

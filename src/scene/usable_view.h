@@ -11,4 +11,11 @@ bool makeUnit(Vec3d& axis);
 // null, or a static text that says what is wrong with the view, which is then unchanged.
 const char* makeUsable(View& view);
 
+// The direction of the lines of sight of an orthographic view that validate() accepts: what lies on one of
+// them is at one place of the picture of clipFromScene(), which right and up alone decide. With axes of
+// single precision it is not quite `forward`, along which depths are measured: a metre of depth is its length
+// along the line of sight, so dot(view.forward, sightDirection(view)) = 1. It is `forward` itself where the
+// axes are orthonormal up to double precision.
+Vec3d sightDirection(const View& view);
+
 }  // namespace sightline::scene

@@ -58,6 +58,27 @@ TEST(HostileSorter, AnOrthographicViewsForwardMayHaveAnyLength) {
   }
 }
 
+// With a right of (1, 0, skew), the cube's side at x = 0 appears where x = 10,000 skew is 10 km behind it.
+TEST(HostileSorter, AnOrthographicViewLooksAtRightAnglesToRightAndUp) {
+  for (const double skew : {9e-7, -9e-7}) {
+    for (const double x : {0.004, 0.008, 0.01, 0.014, -0.004, -0.008, -0.01, -0.014}) {
+      LayerSettings settings;
+      settings.arcs = LayerArcs::kAll;
+      LayerSorter sorter(settings);
+      const HullId near = sorter.addHull(cube()), far = sorter.addHull(point());
+      sorter.setTransform(sorter.addPart({&near, 1}), translation({-1, 0, 0}));
+      sorter.setTransform(sorter.addPart({&far, 1}), translation({x, 0, -10000}));
+      View view = orthographic({0, 0, -1});
+      view.right = {1, 0, skew};
+      ASSERT_TRUE(validate(view));
+      const LayerOrder& order = sorter.update(view);
+      EXPECT_EQ(std::vector<LayerArc>(order.arcs.begin(), order.arcs.end()),
+                x < 10000 * skew ? kFirstOccludes : std::vector<LayerArc>())
+          << skew << ' ' << x;
+    }
+  }
+}
+
 TEST(HostileSorter, AxesThatSpanNoPlaneRuleNothingOut) {
   for (const Vec3d& direction : {Vec3d(1, 1, 1), Vec3d(-2, -2, -2), Vec3d(0, 0, 0), Vec3d(1e-300, 0, 0)}) {
     LayerSettings settings;

@@ -60,6 +60,19 @@ TEST(CloseCracks, AWidthOfNothingChangesNothing) {
   }
 }
 
+TEST(CloseCracks, AWidthThatNoTwoNumbersDifferByChangesNothing) {
+  // A vertex lies exactly on an edge. The cells of a grid so fine could not be told apart.
+  Soup soup;
+  soup.add({200, 200, 200}, {204, 200, 200}, {200, 204, 200});
+  soup.add({202, 202, 200}, {204, 200, 200}, {204, 204, 201});
+  for (const double width : {1e-310, std::numeric_limits<double>::denorm_min(), 0x1p-150}) {
+    const ClosedCracks closed = closeCracks(soup.input(), width);
+    EXPECT_EQ(closed.triangles, soup.triangles) << width;
+    EXPECT_EQ(closed.merged + closed.bent, 0u) << width;
+  }
+  EXPECT_EQ(closeCracks(soup.input(), 0x1p-149).bent, 1u);
+}
+
 TEST(CloseCracks, AVertexBesideAnEdgeBendsIt) {
   Soup soup;
   soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});

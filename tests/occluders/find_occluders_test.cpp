@@ -602,6 +602,21 @@ TEST(MakeOccluders, LeavesOutWhatIsNotConvexOrNotPlanarOrHasNoArea) {
   EXPECT_EQ(madeOf(twice_round), 0u);
 }
 
+TEST(MakeOccluders, LeavesOutASideThatRunsBackAlongItself) {
+  // Within the tolerance of its line, a side goes on to x = 4, back to where it turns, and on again. Between
+  // its parts is a slit that can be seen through.
+  const float width = 1.2e-5f;
+  const auto made = [&](float on, float back) {
+    return madeOf(
+        {{0, 0, -8}, {on, 0, -8}, {back, 0.5f * width, -8}, {10, width, -8}, {10, 10, -8}, {0, 10, -8}});
+  };
+  EXPECT_EQ(made(4, 5), 1u) << "no way back";
+  EXPECT_EQ(made(4, 2.5f), 0u);
+  EXPECT_EQ(made(4, 3.999f), 0u);
+  EXPECT_EQ(made(11, 9), 0u) << "beyond the next corner";
+  EXPECT_EQ(made(4, -1), 0u) << "behind the corner before";
+}
+
 TEST(MakeOccluders, CountsWhatItLeavesOutAndKeepsTheRest) {
   const std::vector<Vec3f> good{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, larger{{0, 0, 1}, {3, 0, 1}, {0, 3, 1}},
       bad{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

@@ -118,6 +118,32 @@ TEST(ProofLimits, SkewedAxesOfAnOrthographicViewAreTakenInOneWay) {
   EXPECT_EQ(verdictOf(scene, view, 0) == Verdict::kVisible, confirms(scene, view, 0, {-0.9999, 0, -1000}));
 }
 
+// right and up decide what lies on one line of sight, as in the picture of clipFromScene(): with a right of
+// (1, 0, skew), an edge at x = 0 and a depth of 1 appears where x = 10,000 skew has a depth of 10,001.
+TEST(ProofLimits, SkewedAxesOfAnOrthographicViewSeeWhatThePictureShows) {
+  for (const double skew : {9e-7, -9e-7}) {
+    for (const float middle : {0.004f, 0.008f, 0.01f, 0.014f, -0.004f, -0.008f, -0.01f, -0.014f}) {
+      Scene scene;
+      const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
+      addWall(scene, material, -1, -1, 0, -1, 1);
+      addWall(scene, material, -10001, middle - 0.0001f, middle + 0.0001f, -0.1f, 0.1f);
+      View view = frontView();
+      view.orthographic = true;
+      view.ortho_height = 1;
+      view.aspect = 1;
+      view.z_near = 0;
+      view.z_far = 2e4;
+      view.right = {1, 0, skew};
+      ASSERT_TRUE(validate(view));
+      const bool shows = static_cast<double>(middle) > 1e4 * skew;
+      EXPECT_EQ(verdictOf(scene, view, 1), shows ? Verdict::kVisible : Verdict::kHidden)
+          << skew << ' ' << middle;
+      EXPECT_EQ(confirms(scene, view, 1, {static_cast<double>(middle), 0, -10001}), shows)
+          << skew << ' ' << middle;
+    }
+  }
+}
+
 TEST(ProofLimits, WhatIsMarkedNeverToOccludeHidesNothing) {
   Scene scene;
   const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);

@@ -42,7 +42,8 @@ struct ClosedScene {
 // A culler with such a scene hides nothing that is visible among its triangles. Of the given triangles it may
 // hide what is seen only along lines of sight that pass within `slack` of an edge of one of them, begin
 // within `slack` of one, or end within `slack` of one of another object (docs/conservative.md, "Contacts").
-// With a width of 0, or one that is not finite, nothing changes. The result does not depend on the threads.
+// With a width below 2^-149, by which numbers of single precision differ at least, or one that is not finite,
+// nothing changes. The result does not depend on the threads.
 ClosedScene closeCracks(const SceneView& scene, double width, const ParallelFor& parallel_for = serialFor);
 
 // A vertex that nearly meets an edge, where the triangles at neither of them cancel.

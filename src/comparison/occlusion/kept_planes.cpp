@@ -47,8 +47,7 @@ struct KeptPlanes::Impl {
 
 // Rounding may only lengthen the path.
 void KeptPlanes::Impl::extendPath(const Eye& from, const Eye& to) {
-  const double step =
-      to.orthographic ? length(to.forward - from.forward) : length(to.position - from.position);
+  const double step = to.orthographic ? length(to.sight - from.sight) : length(to.position - from.position);
   if (!has_eye || to.orthographic != from.orthographic || !std::isfinite(step)) {
     store.clear();
     path = 0.0;

@@ -94,7 +94,7 @@ void makeRelation(const ActiveOccluder& occluder, std::span<const InsetEdge> edg
 void evaluate(const Eye& eye, const ActiveOccluder& occluder, std::span<const PlaneQuad> planes, double path,
               Relation& relation) {
   // The eye relative to the occluder's first vertex; orthographic: the direction to it, with weight 0.
-  const Vec3d at = eye.orthographic ? -eye.forward : eye.position - occluder.origin;
+  const Vec3d at = eye.orthographic ? -eye.sight : eye.position - occluder.origin;
   const double weight = eye.orthographic ? 0.0 : 1.0;
   const double threshold = kPlaneValue * (eye.orthographic ? 1.0 : occluder.seen.reach);
   const double sign = relation.behind ? 1.0 : -1.0;  // what "surely" means for the first plane of an edge

@@ -20,6 +20,7 @@
 #include "src/layers/sort/layer_sort_algorithm.h"
 #include "src/layers/sort/layer_source.h"
 #include "src/layers/sort/view_volume.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -53,15 +54,21 @@ LayerSettings checked(LayerSettings settings) {
   return settings;
 }
 
-// Scales the forward direction of an orthographic view, which may have any length, by a power of two, so that
+// Returns the view with its lines of sight as forward, if it is orthographic: right and up say where these
+// go, if validate() accepts the view. forward may have any length, and is scaled by a power of two, so that
 // no product of two of its coordinates underflows.
-View scaled(const View& view) {
-  const double largest = maxComponent(abs(view.forward));
-  View result = view;
+View alongSight(const View& view) {
+  View result = view, usable = view;
+  if (view.orthographic && scene::makeUsable(usable) == nullptr) {
+    const Vec3d sight = scene::sightDirection(usable);
+    result.forward = sight == usable.forward ? view.forward : sight;
+  }
+  const double largest = maxComponent(abs(result.forward));
   if (view.orthographic && std::isfinite(largest) && largest > 0.0) {
     const int exponent = std::ilogb(largest);
-    result.forward = {std::ldexp(view.forward.x, -exponent), std::ldexp(view.forward.y, -exponent),
-                      std::ldexp(view.forward.z, -exponent)};
+    for (double* coordinate : {&result.forward.x, &result.forward.y, &result.forward.z}) {
+      *coordinate = std::ldexp(*coordinate, -exponent);
+    }
   }
   return result;
 }
@@ -549,9 +556,9 @@ LayerStats LayerSorter::Impl::stats() const {
 
 const LayerOrder& LayerSorter::update(const View& given, std::span<const Vec3d> more_eyes) {
   Impl& own = *impl_;
-  const View view = scaled(given);
+  const View view = alongSight(given);
   more_eyes = more_eyes.first(std::min(more_eyes.size(), kMaxMoreEyes));
-  own.chooseParts(view, more_eyes.empty() || view.orthographic);
+  own.chooseParts(given, more_eyes.empty() || view.orthographic);
   own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort, more_eyes);
   std::fill(own.moved.begin(), own.moved.end(), 0);
   std::fill(own.sorted.begin(), own.sorted.end(), 1);

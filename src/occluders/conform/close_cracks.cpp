@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -22,6 +23,9 @@ namespace {
 // Distances are rounded by much less than this part of themselves and of the coordinates.
 constexpr double kRounded = 1e-14;
 
+// No two numbers of single precision are closer than this. With much smaller widths, cells overflow.
+constexpr double kLeastWidth = std::numeric_limits<float>::denorm_min();
+
 // A vertex beside an edge. The greater `along` is, the farther it is from the edge's lower end.
 struct Beside {
   double along = 0.0;
@@ -37,7 +41,7 @@ class Closing {
         triangles_(input.triangles.begin(), input.triangles.end()) {}
 
   ClosedCracks close() {
-    if (width_ > 0.0 && std::isfinite(width_)) {
+    if (width_ >= kLeastWidth && std::isfinite(width_)) {
       findOpenEdges();
       mergeVertices();
       findOpenEdges();

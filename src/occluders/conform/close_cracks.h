@@ -25,7 +25,8 @@ struct ClosedCracks : BentTriangles {
 // move, edges are bent and triangles with them; what is connected stays connected. Edges that cancel are not
 // looked at, and neither are vertices beside a face, nor edges that more than 4,096 vertices lie beside. A
 // line of sight through a crack that was closed is then taken to be blocked: the crack was narrower than
-// twice the width. With a width of 0, or one that is not finite, nothing changes.
+// twice the width. With a width below 2^-149, by which numbers of single precision differ at least, or one
+// that is not finite, nothing changes.
 ClosedCracks closeCracks(const ConformInput& input, double width,
                          const ParallelFor& parallel_for = serialFor);
 

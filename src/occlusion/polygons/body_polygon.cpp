@@ -55,7 +55,7 @@ std::optional<SeenFaces> facesFrom(const Eye& eye, const OccluderSet& set, const
   for (const BodyFace& face : set.facesOf(body)) {
     const double height = -dot(face.plane.normal, vertices.relative[face.vertex]);
     const double grazing =
-        (eye.orthographic ? -dot(face.plane.normal, eye.forward) : height) / vertices.farthest;
+        (eye.orthographic ? -dot(face.plane.normal, eye.sight) : height) / vertices.farthest;
     if (!(std::abs(grazing) > kGrazingSine)) {
       return std::nullopt;
     }

@@ -97,6 +97,7 @@ void PolygonBuilder::build(const PolygonProjection& projection, const OccluderSe
   Eye eye;
   eye.position = view.eye;
   eye.forward = view.forward;
+  eye.sight = view.unit_z;
   eye.near = view.near;
   eye.orthographic = view.orthographic;
   takeChosen(projection, eye, set, chosen, polygons);

@@ -48,7 +48,7 @@ std::uint64_t ActivePolygons::joinAcross(const OccluderSet& set, const Eye& eye,
   // The plane through the eye and the edge, the polygon behind it. The length of its normal does not matter.
   Plane plane;
   plane.normal =
-      eye.orthographic ? cross(eye.forward, outline.to - outline.from) : cross(outline.from, outline.to);
+      eye.orthographic ? cross(eye.sight, outline.to - outline.from) : cross(outline.from, outline.to);
   plane.offset = eye.orthographic ? -dot(plane.normal, outline.from) : 0.0;
   if (!(plane.evaluate(polygons_[number].seen.centroid) < 0.0)) {
     return all;

@@ -21,7 +21,7 @@ void BoxImage::begin(const EyeBox& box, const Eye& eye, double scale) {
   stack_.corners.clear();
   parts_.clear();
   // An orthographic eye is infinitely far behind.
-  const int region = eye.orthographic ? geometry::regionOfOrigin(eye.forward, eye.forward)
+  const int region = eye.orthographic ? geometry::regionOfOrigin(eye.sight, eye.sight)
                                       : geometry::regionOfOrigin(box.min, box.max);
   const geometry::Silhouette& loop = geometry::silhouetteFrom(region);
   for (int i = 0; i < loop.count; ++i) {

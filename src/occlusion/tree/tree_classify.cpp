@@ -35,7 +35,7 @@ std::array<Vec3d, 4> faceOf(const EyeBox& box, int axis, bool high) {
 // Returns the side of an axis on which the box has a face towards the eye: -1, 1, or 0 for none.
 int facingSide(const EyeBox& box, const Eye& eye, int axis) {
   if (eye.orthographic) {
-    return eye.forward[axis] > 0.0 ? -1 : eye.forward[axis] < 0.0 ? 1 : 0;
+    return eye.sight[axis] > 0.0 ? -1 : eye.sight[axis] < 0.0 ? 1 : 0;
   }
   return box.min[axis] > 0.0 ? -1 : box.max[axis] < 0.0 ? 1 : 0;
 }
@@ -296,27 +296,21 @@ namespace {
 // Separating-axis test of a box, grown by a margin, and a set of points.
 class SeparatingAxis {
  public:
-  SeparatingAxis(std::span<const Vec3d> base, bool orthographic, const Vec3d& forward, const EyeBox& box,
-                 double margin)
-      : base_(base),
-        orthographic_(orthographic),
-        forward_(forward),
-        center_(box.center()),
-        half_(box.half()),
-        margin_(margin) {}
+  SeparatingAxis(std::span<const Vec3d> base, const Eye& eye, const EyeBox& box, double margin)
+      : base_(base), eye_(eye), center_(box.center()), half_(box.half()), margin_(margin) {}
 
   // axis: any length.
   bool separates(const Vec3d& axis) const {
     const double c = dot(axis, center_);
     const double r = dot(abs(axis), half_);
     double low = 0.0, high = 0.0;  // of the pyramid; its apex is the eye at 0
-    const double along =
-        dot(axis, forward_) / dot(forward_, forward_);  // forward_ is of length 1 but for rounding
+    // How far a metre of depth on a line of sight leads along the axis. The divisor is 1 but for rounding.
+    const double along = dot(axis, eye_.sight) / dot(eye_.forward, eye_.sight);
     for (std::size_t i = 0; i < base_.size(); ++i) {
       const double d = dot(axis, base_[i]);
       // Orthographic: from the base back to the camera's plane.
-      const double other = orthographic_ ? d - along * dot(forward_, base_[i]) : d;
-      if (i == 0 && orthographic_) {
+      const double other = eye_.orthographic ? d - along * dot(eye_.forward, base_[i]) : d;
+      if (i == 0 && eye_.orthographic) {
         low = high = d;
       }
       low = std::min({low, d, other});
@@ -328,8 +322,8 @@ class SeparatingAxis {
 
  private:
   std::span<const Vec3d> base_;
-  bool orthographic_;
-  Vec3d forward_, center_, half_;
+  const Eye& eye_;
+  Vec3d center_, half_;
   double margin_;
 };
 
@@ -340,7 +334,7 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
   const Eye& eye = tree.volumes.eye;
   const auto base = std::span(tree.corners).subspan(leaf.first_corner, leaf.corner_count);
   const double margin = supportMargin(volume, box.reach()) + kDepthMargin * volume.reach;
-  const SeparatingAxis test(base, eye.orthographic, eye.forward, box, margin);
+  const SeparatingAxis test(base, eye, box, margin);
   const std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
   for (const Vec3d& axis : axes) {
     if (test.separates(axis)) {
@@ -351,7 +345,7 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
   // are left are products of edges.
   for (std::size_t i = 0; i < base.size(); ++i) {
     const Vec3d along = base[(i + 1) % base.size()] - base[i];
-    const Vec3d up = eye.orthographic ? eye.forward : base[i];
+    const Vec3d up = eye.orthographic ? eye.sight : base[i];
     for (const Vec3d& axis : axes) {
       if (test.separates(cross(axis, along)) || test.separates(cross(axis, up))) {
         return true;

@@ -14,7 +14,7 @@ namespace sightline::tool {
 
 // Raise this number whenever a change of oracle/ or of exactFrame() may change an answer: answers that
 // ExactCache kept under another number are not used.
-inline constexpr std::uint32_t kExactFrameVersion = 3;
+inline constexpr std::uint32_t kExactFrameVersion = 4;
 
 // How thoroughly objects are looked for.
 struct ExactSettings {
