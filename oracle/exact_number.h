@@ -23,9 +23,9 @@ using Whole = boost::multiprecision::number<
                                            std::allocator<boost::multiprecision::limb_type>>,
     boost::multiprecision::et_off>;
 
-// The number divided by 2^dropped, rounded towards zero, where that takes 60 bits or less. By its magnitude:
-// shifting a negative number of several limbs to the right loses its sign in Boost 1.74 if its lowest limb
-// is 1.
+// The number divided by 2^dropped, rounded towards zero. Precondition: the result has at most 60 bits. It
+// shifts the magnitude, because shifting a negative number of several limbs to the right loses its sign in
+// Boost 1.74 if its lowest limb is 1.
 inline double leadingPart(const Whole& number, unsigned dropped) {
   const auto part = static_cast<double>(Whole(Whole(abs(number)) >> dropped));
   return number.sign() < 0 ? -part : part;

@@ -18,9 +18,9 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
       positions_(positions),
       more_(more),
       exponent_(std::min({lowest_exponent, lowestExponent(view.eye), 0})),
-      forward_exponent_(lowestExponent(view.forward)),
+      direction_exponent_(lowestExponent(view.forward)),
       exact_eye_(wholeOf(view.eye, exponent_)),
-      exact_forward_(wholeOf(view.forward, forward_exponent_)),
+      exact_forward_(wholeOf(view.forward, direction_exponent_)),
       right_(view.right),
       up_(view.up),
       forward_(view.forward) {
@@ -28,9 +28,9 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
     return;
   }
   sight_ = scene::sightDirection(view);
-  forward_exponent_ = std::min(forward_exponent_, lowestExponent(sight_));
-  exact_forward_ = wholeOf(view.forward, forward_exponent_);
-  exact_sight_ = wholeOf(sight_, forward_exponent_);
+  direction_exponent_ = std::min(direction_exponent_, lowestExponent(sight_));
+  exact_forward_ = wholeOf(view.forward, direction_exponent_);
+  exact_sight_ = wholeOf(sight_, direction_exponent_);
   axis_ = math::longestAxis(abs(sight_));
   const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
   const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0) * (1.0 + shift));
@@ -55,11 +55,12 @@ Vec3d ImageSpace::project(const Vec3d& from_eye, double last) const {
           last};
 }
 
-// The same without rounding; all coordinates, the last one too, are times 2^-(exponent + forward_exponent_).
+// The same without rounding; all coordinates, the last one too, are times 2^-(exponent +
+// direction_exponent_).
 WholeVec ImageSpace::exactProject(const WholeVec& from_eye, int exponent) const {
   const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
   const Whole &s = component(exact_sight_, axis_), &depth = component(from_eye, axis_);
-  const Whole last = wholeOf(last_, exponent + forward_exponent_);
+  const Whole last = wholeOf(last_, exponent + direction_exponent_);
   return {component(from_eye, i) * s - depth * component(exact_sight_, i),
           component(from_eye, j) * s - depth * component(exact_sight_, j), last};
 }
@@ -102,14 +103,14 @@ Whole ImageSpace::exactWeight(std::uint32_t position) const {
 ImageSpace::ExactNearness ImageSpace::exactNearnessAt(double depth) const {
   if (view_.orthographic) {
     // Minus the depth, times the last coordinate of the direction over that coordinate in `exactProject`.
-    // Both are in units of 2^(exponent_ + forward_exponent_), so the units cancel.
+    // Both are in units of 2^(exponent_ + direction_exponent_), so the units cancel.
     const int exponent = std::min(lowestExponent(depth / last_), 0);
     return {{0, 0, -wholeOf(depth / last_, exponent)}, wholeOf(1.0, exponent)};
   }
   const int exponent = std::min(lowestExponent(depth), 0);
   // forward . d / depth. Directions are in units of 2^exponent_, and the viewing direction in units of
-  // 2^forward_exponent_; the depth is brought to the product of both.
-  const int unit = exponent_ + forward_exponent_;
+  // 2^direction_exponent_; the depth is brought to the product of both.
+  const int unit = exponent_ + direction_exponent_;
   const int common = std::min(exponent, unit);
   return {exact_forward_ * (Whole(1) << static_cast<unsigned>(unit - common)), wholeOf(depth, common)};
 }

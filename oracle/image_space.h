@@ -99,8 +99,8 @@ class ImageSpace {
   View view_;
   std::span<const Vec3f> positions_, more_;
   int exponent_ = 0;  // of exact coordinates in space
-  // Of the two exact directions below.
-  int forward_exponent_ = 0;
+  // The coordinates of exact_forward_ and exact_sight_ are whole multiples of 2 to the power of this.
+  int direction_exponent_ = 0;
   WholeVec exact_eye_, exact_forward_;
   // Orthographic: the direction of the lines of sight, and the axis that it is nearest to. Depths are
   // measured along the view's forward, which is another direction where the axes are not quite perpendicular.

@@ -119,7 +119,7 @@ void ProofMesh::findPartners() {
   partners.assign(2 * triangles.size(), {kNoSheet, kNoSheet, kNoSheet});
   for (std::uint32_t sheet = 0; sheet < partners.size(); ++sheet) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if ((sheet % 2 == 0 || triangles[sheet / 2].double_sided) && edges[edgeOf(sheet, k)].of_one_object) {
+      if ((sheet % 2 == 0 || triangles[sheet / 2].double_sided) && edges[edgeOf(sheet, k)].hasPartners()) {
         partners[sheet][k] = partnerAt(sheet, k, {});
       }
     }

@@ -31,6 +31,8 @@ struct ProofMesh {
     std::size_t first = 0;
     std::uint32_t count = 0;
     bool of_one_object = true;
+    // Partners of few triangles are found beforehand; among many, that would take too long.
+    bool hasPartners() const { return of_one_object && count <= 8; }
   };
   struct Body {
     std::vector<std::uint32_t> triangles;
@@ -52,12 +54,12 @@ struct ProofMesh {
   std::uint32_t edgeOf(std::uint32_t sheet, std::uint32_t k) const {
     return triangles[sheet / 2].edge[sheet % 2 == 0 ? k : 2 - k];
   }
-  // The sheet that is joined with this one at its edge k, without the left-out objects, of which the sheet's
-  // own is none; kNoSheet if there is none. Joining is mutual, so that joined edges cancel, whatever the
-  // choice.
+  // The sheet that is joined with this one at its edge k, without the left-out objects; kNoSheet if there is
+  // none. Joining is mutual, so that joined edges cancel, whatever the choice. Precondition: the sheet's
+  // object is not left out.
   std::uint32_t partnerOf(std::uint32_t sheet, std::uint32_t k,
                           std::span<const std::uint32_t> left_out) const {
-    return edges[edgeOf(sheet, k)].of_one_object ? partners[sheet][k] : partnerAt(sheet, k, left_out);
+    return edges[edgeOf(sheet, k)].hasPartners() ? partners[sheet][k] : partnerAt(sheet, k, left_out);
   }
   // True if the segment surely meets no triangle of the object.
   bool misses(const Vec3d& from, const Vec3d& to, ObjectId object) const;
@@ -69,7 +71,7 @@ struct ProofMesh {
   std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // by first index in the scene
   std::vector<Edge> edges;
   std::vector<std::uint32_t> at_edges;  // triangles
-  // By sheet: those that it is joined with if no object is left out; only of edges of one object.
+  // By sheet: those that it is joined with at the edges that have partners.
   std::vector<std::array<std::uint32_t, 3>> partners;
   std::vector<Body> bodies;
   std::vector<std::uint32_t> body_of;

@@ -209,12 +209,13 @@ class RegionProof::Attempt {
     return from_eyes && (apart(box, target_, 0.0) || allOn(t, true, false) || allOn(t, false, false));
   }
 
-  // What is the same of a sheet whichever surface it is met in.
+  // Facts of a sheet that depend on the eyes, the target and the shaft alone, so that they hold for each
+  // candidate and whatever is left out.
   struct SheetFacts {
     bool known = false;
     bool spoils = false;                 // a line of sight may begin or end at it
     std::array<bool, 3> misses_shaft{};  // by edge
-    std::uint32_t follow = 0;            // number of the last surface that it was in
+    std::uint32_t last_surface = 0;      // number of the last one that it was found in
   };
   const SheetFacts& factsOf(std::uint32_t sheet, const Shaft& shaft) {
     SheetFacts& facts = sheets_[sheet];
@@ -257,8 +258,8 @@ class RegionProof::Attempt {
       }
       start += 1;
     }
-    follows_ += 1;
-    sheets_[start].follow = follows_;
+    surface_count_ += 1;
+    sheets_[start].last_surface = surface_count_;
     std::vector<std::uint32_t> members{start};
     for (std::size_t i = 0; i < members.size(); ++i) {
       if (members.size() > kMostMembers) {
@@ -278,7 +279,7 @@ class RegionProof::Attempt {
           spoiler = mesh_.triangles[members[i] / 2].object;
           return false;
         }
-        if (std::exchange(sheets_[partner].follow, follows_) != follows_) {
+        if (std::exchange(sheets_[partner].last_surface, surface_count_) != surface_count_) {
           members.push_back(partner);
         }
       }
@@ -304,8 +305,8 @@ class RegionProof::Attempt {
   std::array<Vec3d, kSightLines> starts_{}, ends_{};
   DoubleBox target_, around_{};
   std::vector<std::uint32_t> candidates_;
-  std::unordered_map<std::uint32_t, SheetFacts> sheets_;  // of the one shaft that there is
-  std::uint32_t follows_ = 0;
+  std::unordered_map<std::uint32_t, SheetFacts> sheets_;  // by number
+  std::uint32_t surface_count_ = 0;
 };
 
 RegionProof::RegionProof(const SceneView& scene) : mesh_(std::make_unique<ProofMesh>(scene)) {}

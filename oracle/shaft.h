@@ -25,8 +25,8 @@ class Shaft {
   };
 
   void addSide(const Vec3d& normal);
-  // True only if the point is beyond all of the hull; beyond its top is a first look, as the top is one
-  // point.
+  // True only if the point is beyond all of the hull. isBeyondTop() tests one point of it, so it is a quick
+  // and necessary condition.
   static bool isBeyondTop(const Side& side, const Vec3d& p);
   bool isBeyond(const Side& side, const Vec3d& p) const;
 

@@ -19,8 +19,9 @@ struct HidingBox {
   static HidingBox none();
   void extend(const ScreenPoint& point);
   void extend(const HidingBox& box);
-  // Grows the box by more than the rounding of its corners and of lines behind it. `reach` is how far
-  // the corners are from the eye, in units of the screen: 1 in perspective.
+  // Grows the box by more than the rounding of its corners, and of lines behind it up to 256 times as far
+  // from the eye; lines farther away may be drawn beside its border. `reach` is how far the corners are from
+  // the eye, in units of the screen: 1 in perspective.
   void widen(double reach);
 };
 

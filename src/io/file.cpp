@@ -23,9 +23,9 @@ namespace {
 constexpr std::size_t kMaxAtOnce = 1u << 30;  // bytes of one call of the system
 constexpr std::size_t kMaxNameLength = 200;   // bytes; file systems allow 255
 
-// Makes and opens a file beside the target, which was not there and is no link. Its name has a number because
-// another process, also one with the same id elsewhere, may be writing the same target, and interrupted ones
-// leave theirs. Returns -1 and sets errno if that fails.
+// Makes and opens a new file beside the target; a file or link of that name is left alone. Its name has a
+// number because another process, also one with the same id elsewhere, may be writing the same target, and
+// interrupted ones leave theirs. Returns -1 and sets errno if that fails.
 int openBeside(const std::string& target, std::string& name) {
   const fs::path path = target;
   std::string begin = path.filename().string();

@@ -66,7 +66,7 @@ Frustum frustumOf(const View& given) {
     frustum.planes.fill({Vec3d(), 1.0});
     return frustum;
   }
-  // Moved outwards by more than the rounding of the normal and the point, which the view's coordinates bound.
+  // Moved outwards by more than the offset is rounded, and the normal as far as the eye's coordinates reach.
   const auto through = [&view](const Vec3d& normal, const Vec3d& point) {
     const Vec3d unit = normalized(normal), size = abs(view.eye) + abs(point);
     return Plane{unit, -dot(unit, point) + 0x1p-49 * (size.x + size.y + size.z)};

@@ -68,7 +68,7 @@ struct PixelView {
     const double volume = dot(right, across);
     unit_x = across / volume;
     unit_y = cross(forward, right) / volume;
-    unit_z = cross(right, up) / volume;
+    unit_z = cross(right, up) / volume;  // sightDirection(), but for 2^-48
     viewers = region;
     for (Vec3d& offset : viewers.offsets) {
       offset = toCamera(offset);

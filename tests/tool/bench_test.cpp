@@ -46,7 +46,7 @@ TEST(BenchAnswers, AreTheSameOnEveryMachineWithAnyNumberOfThreads) {
   const std::vector<std::string> pyramids{"--cache",          cache,        "--method",
                                           "depth-pyramid",    "--surfaces", "none,with-occluders",
                                           "--occluder-count", "16,64"};
-  const std::vector<std::string> city{"f93ff134933fb1fa", "f14cea3b36eb9c18", "d2d2cf695dc7a063",
+  const std::vector<std::string> city{"f93ff134933fb1fa", "15e3a98d38db7cef", "b791e06f658d136f",
                                       "1de2a4420b725f9c", "9c34d2550b16d4b1", "e86b3200d5db48f2",
                                       "4acaf4093a7416b7", "9092e699b0ac061c"};
   const std::vector<std::string> city_pyramids{"f93ff134933fb1fa", "5dfa4b38696eba97", "87c1708b585bb053",

@@ -48,8 +48,9 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint);
 // can it in any view with z_near = 0.
 Mat4 clipFromScene(const View& view);
 
-// The six frustum planes of the view, in its own space, each moved outwards by its rounding, so that nothing
-// in the view is beyond one of them. For a view that validate() rejects: planes that contain all of space.
+// The six frustum planes of the view, in its own space, each moved outwards by what the eye's coordinates
+// round its offset and its normal by. What the normal's rounding is worth at a point beside it is left to
+// those who test: classify() does. For a view that validate() rejects: planes that contain all of space.
 Frustum frustumOf(const View& view);
 
 // Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a

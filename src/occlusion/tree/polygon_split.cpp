@@ -18,8 +18,9 @@ bool PolygonStack::agrees(const Corner& corner, const Plane& plane, PlaneRef ref
   if (corner.open || !named(corner.edge)) {
     return false;
   }
-  const double width = (*tolerances)[ref.plane()];
-  if (!(width > 0.0) || std::abs((*tolerances)[corner.edge.plane()] - width) > equal_tolerance) {
+  // On the other side of a frustum's plane is nobody who would ask about a gap that ends there.
+  const double width = (*tolerances)[ref.plane()], own_width = (*tolerances)[corner.edge.plane()];
+  if (!(width > kTouching && own_width > kTouching) || std::abs(own_width - width) > equal_tolerance) {
     return false;
   }
   const Vec3d& stored = (*planes)[corner.edge.plane()].normal;

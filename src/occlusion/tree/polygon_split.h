@@ -9,6 +9,10 @@
 
 namespace sightline::occlusion {
 
+// The width of the frustum's planes: no more than rounding, so that what touches the frustum is in it. Planes
+// of shared edges are wider.
+inline constexpr double kTouching = 0x1p-60;
+
 // A polygon on the stack.
 struct Piece {
   std::uint32_t first = 0, count = 0;

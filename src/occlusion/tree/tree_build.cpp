@@ -10,7 +10,6 @@ namespace sightline::occlusion {
 // Adds the frustum's side planes at the top: no shadow is stored outside them, and parts of boxes there do
 // not count.
 void TreeBuilder::addFrustum(const View& view) {
-  constexpr double kTouching = 0x1p-60;  // no more than rounding, so that what touches the frustum is in it
   const Frustum frustum = frustumOf(view);
   for (std::size_t i = 0; i < 4; ++i) {
     Plane outwards = frustum.planes[i].flipped();

@@ -1,6 +1,7 @@
 #pragma once
 
-// Notes and errors on stderr. Whether they can be written changes nothing else: what fails here is ignored.
+// Notes and errors on stderr. If stderr is closed or full, that changes nothing else: what fails here is
+// ignored. As of any program, a pipe that nobody reads ends the process.
 
 #include <fmt/format.h>
 

@@ -20,7 +20,7 @@ namespace {
 
 // Claims that are decided together, or a leaf if it has more: enough for all threads.
 constexpr std::size_t kClaimsAtOnce = 1 << 14;
-// So many are judged between two looks at the progress.
+// Claims that are judged between two updates of the progress bar.
 constexpr std::size_t kJudgedAtOnce = 1 << 10;
 
 struct Claim {
@@ -358,6 +358,7 @@ class Checker {
       progress_.update(stretch.from + (stretch.to - stretch.from) * static_cast<double>(first + size) /
                                           static_cast<double>(count));
     }
+    progress_.update(stretch.to);
   }
 
   const SightFile& baked_;

@@ -52,7 +52,7 @@ struct Setting {
   // The most boxes of an object; if none were asked for, those of the depth pyramid, and one of other
   // methods.
   std::uint32_t objectBoxes() const;
-  bool usesOccluders() const;  // has to do with occluders at all
+  bool usesOccluders() const;  // the method can choose occluders
   bool choosesOccluders() const;
   bool usesDatabase() const;
   bool usesViewpoints() const;

@@ -91,7 +91,7 @@ HWY_EXPORT(findMet);
 constexpr std::uint32_t kNodeBit = 1u << 31;
 // Single precision loses less than this of the difference of two coordinates, in units of their bound.
 constexpr double kRounding = 0x1p-21;
-// The inverses of what is less far have all their digits.
+// Below this, the inverse is a normal number of single precision.
 constexpr double kFarthestInSingles = 0x1p126;
 
 float inverseOf(double end, float if_zero) {
@@ -107,7 +107,7 @@ Cone::Cone(const CellBox& from, const CellBox& to, double margin, double magnitu
     // Where an end stays where it is along an axis, all of the cone is before what lies beyond it.
     Axis& axis = axes[static_cast<std::size_t>(a)];
     // Beyond the range of single precision, the axis bounds nothing.
-    if (!(std::max(std::abs(far), std::abs(near)) < kFarthestInSingles)) {
+    if (!(std::abs(far) < kFarthestInSingles && std::abs(near) < kFarthestInSingles)) {
       constexpr float kMost = std::numeric_limits<float>::max();
       axis = {.low = kMost, .high = -kMost, .inverse_far = 1.0f, .inverse_near = -1.0f};
       continue;
