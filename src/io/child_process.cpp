@@ -16,8 +16,8 @@
 #include <fstream>
 #include <mutex>
 #include <new>
-#include <span>
 
+#include "src/base/new_file.h"
 #include "src/io/failure.h"
 
 namespace sightline::io {
@@ -72,19 +72,11 @@ void detachChild(pid_t parent) {
   }
 }
 
-void writeAll(int descriptor, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) {
-      ::_exit(kThrew);
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
-  }
-}
-
 [[noreturn]] void runChild(const std::function<std::vector<std::byte>()>& work, int descriptor) {
   try {
-    writeAll(descriptor, work());
+    if (!base::writeAll(descriptor, work())) {
+      ::_exit(kThrew);
+    }
   } catch (const std::bad_alloc&) {
     ::_exit(kOutOfMemory);
   } catch (...) {

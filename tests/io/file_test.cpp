@@ -64,6 +64,15 @@ TEST_F(Files, WhatLiesWhereAFileIsPreparedIsNotOverwritten) {
   EXPECT_EQ(folder.entries(), 4u) << "the links stay, and nothing else is left over";
 }
 
+TEST_F(Files, WhatManyInterruptedRunsLeftDoesNotStopAnother) {
+  for (int i = 0; i < 150; ++i) {
+    folder.write(fmt::format("a.bin.{}.{}.unfinished", ::getpid(), i), "left over");
+  }
+  ASSERT_TRUE(writeFile(path("a.bin"), "new"));
+  EXPECT_EQ(readFile(path("a.bin")).value(), "new");
+  EXPECT_EQ(folder.entries(), 151u);
+}
+
 TEST_F(Files, NamesMayBeAsLongAsTheFileSystemAllows) {
   const std::string longest(255, 'n');
   ASSERT_TRUE(writeFile(path(longest), "x"));

@@ -1,6 +1,7 @@
 #include "sightline/pvs/bake/write_sight.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -55,6 +56,31 @@ TEST(WriteSight, LeavesNothingInAFolderThatIsNotThere) {
   EXPECT_NE(error.find(name), std::string::npos) << error;
   EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
   EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(WriteSight, WritesBesideWhatManyInterruptedRunsLeftAndFollowsNoLink) {
+  const test::TemporaryFolder folder;
+  const auto leftOver = [&](int i) {
+    return "a.sight." + std::to_string(::getpid()) + "." + std::to_string(i) + ".unfinished";
+  };
+  fs::create_symlink(folder.write("victim", "precious"), folder.file(leftOver(0)));
+  for (int i = 1; i < 150; ++i) {
+    folder.write(leftOver(i), "left over");
+  }
+  ASSERT_EQ(errorOf(writeSight(folder.file("a.sight"), made::visibility())), "");
+  EXPECT_TRUE(SightFile::open(folder.file("a.sight")));
+  EXPECT_EQ(test::contents(folder.file("victim")), "precious");
+  EXPECT_EQ(folder.entries(), 152u) << "nothing is removed but its own";
+}
+
+TEST(WriteSight, NamesMayBeAsLongAsTheFileSystemAllows) {
+  const test::TemporaryFolder folder;
+  const std::string longest = std::string(249, 'n') + ".sight";
+  ASSERT_EQ(errorOf(writeSight(folder.file(longest), made::visibility())), "");
+  EXPECT_TRUE(SightFile::open(folder.file(longest)));
+  EXPECT_NE(errorOf(writeSight(folder.file("n" + longest), made::visibility())).find("File name too long"),
+            std::string::npos);
+  EXPECT_EQ(folder.names(), Names{longest});
 }
 
 // The target is a folder, so writing succeeds until the rename.

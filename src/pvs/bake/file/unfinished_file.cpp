@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "src/base/new_file.h"
+
 namespace sightline::pvs {
 namespace {
 
@@ -27,15 +29,7 @@ void flushFolderOf(const std::string& file) {
 }  // namespace
 
 UnfinishedFile::UnfinishedFile(const std::string& target) : target_(target) {
-  // The name has a number, because another program may be writing the same file, and interrupted ones leave
-  // theirs.
-  for (int i = 0; i < 100 && number_ < 0; ++i) {
-    name_ = target + "." + std::to_string(::getpid()) + "." + std::to_string(i) + ".unfinished";
-    number_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (number_ < 0 && errno != EEXIST) {
-      break;
-    }
-  }
+  number_ = base::openNewFileBeside(target, name_);
   check(number_ >= 0);
 }
 
@@ -54,10 +48,8 @@ void UnfinishedFile::makeNameless() {
 }
 
 bool UnfinishedFile::write(std::span<const std::byte> bytes) {
-  while (error_ == 0 && !bytes.empty()) {
-    const ssize_t written = ::write(number_, bytes.data(), std::min(bytes.size(), kMaxAtOnce));
-    check(written >= 0 || errno == EINTR);
-    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+  if (error_ == 0) {
+    check(base::writeAll(number_, bytes));
   }
   return error_ == 0;
 }
