@@ -89,7 +89,7 @@ class Fan {
 
 struct Faces {
   const SceneView& scene;
-  const View& view;
+  TriangleSides sides;
   bool double_sided = false;
 
   std::optional<Wing> wing(std::uint32_t first_index, bool along) const {
@@ -106,7 +106,7 @@ struct Faces {
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});
     const double size =
         std::max({maxComponent(abs(Vec3d(a))), maxComponent(abs(Vec3d(b))), maxComponent(abs(Vec3d(c)))});
-    const int side = sideSeen(a, b, c, view);
+    const int side = sides.seen(a, b, c);
     Wing wing;
     wing.normal = normal * ((along ? 1.0 : -1.0) / area);
     wing.tilt_rad = kCornerRounding * size * longest / area;
@@ -130,7 +130,7 @@ FeatureEdges::FeatureEdges(const SceneView& scene) {
 void FeatureEdges::select(const SceneView& scene, ObjectId object, const View& view,
                           const FeatureSettings& settings, std::vector<FeatureLine>& lines) const {
   lines.clear();
-  const Faces faces{scene, view, scene.materialOf(scene.objects[object.value]).double_sided};
+  const Faces faces{scene, TriangleSides(view), scene.materialOf(scene.objects[object.value]).double_sided};
   for (std::uint32_t i = first_edge_[object.value]; i < first_edge_[object.value + 1]; ++i) {
     const Edge& edge = edges_[i];
     const Vec3f& a = scene.positions[edge.a];

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sightline/geometry/tolerance.h"
-#include "src/drawing/triangle_side.h"
 
 namespace sightline::drawing {
 namespace {
@@ -40,21 +39,23 @@ void HidingTriangles::set(const SceneView& scene, const LineView& view) {
   triangles_.clear();
   trees_.clear();
   roots_.clear();
+  const TriangleSides sides(view.view());
   for (const Object& object : scene.objects) {
     items_.clear();
     if (view.drawable() && scene.materialOf(object).opaque()) {
-      addObject(scene, object, view);
+      addObject(scene, object, sides, view);
     }
     roots_.push_back(trees_.add(items_));
   }
 }
 
-void HidingTriangles::addObject(const SceneView& scene, const Object& object, const LineView& view) {
+void HidingTriangles::addObject(const SceneView& scene, const Object& object, const TriangleSides& sides,
+                                const LineView& view) {
   const bool double_sided = scene.materialOf(object).double_sided;
   const std::span<const std::uint32_t> indices = scene.indicesOf(object);
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const int side = sideSeen(scene.positions[indices[i]], scene.positions[indices[i + 1]],
-                              scene.positions[indices[i + 2]], view.view());
+    const int side = sides.seen(scene.positions[indices[i]], scene.positions[indices[i + 1]],
+                                scene.positions[indices[i + 2]]);
     if (side > 0 || (side < 0 && double_sided)) {
       addTriangle(scene, indices.subspan(i, 3), view);
     }

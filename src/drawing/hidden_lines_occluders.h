@@ -9,6 +9,7 @@
 #include "sightline/scene/scene.h"
 #include "src/drawing/hidden_lines_tree.h"
 #include "src/drawing/triangle_hiding.h"
+#include "src/drawing/triangle_side.h"
 
 namespace sightline::drawing {
 
@@ -23,7 +24,8 @@ class HidingTriangles {
   const HidingTriangle& operator[](std::uint32_t id) const { return triangles_[id]; }
 
  private:
-  void addObject(const SceneView& scene, const Object& object, const LineView& view);
+  void addObject(const SceneView& scene, const Object& object, const TriangleSides& sides,
+                 const LineView& view);
   void addTriangle(const SceneView& scene, std::span<const std::uint32_t> corners, const LineView& view);
 
   std::vector<HidingTriangle> triangles_;
