@@ -17,7 +17,7 @@
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/object_arrays.h"
 
 namespace sightline {

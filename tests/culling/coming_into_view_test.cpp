@@ -9,7 +9,7 @@
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/opacity_map_method.h"
 #include "tests/culling/culled_scene.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline::culling {
 namespace {

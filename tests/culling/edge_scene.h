@@ -9,7 +9,7 @@
 #include "sightline/occluders/surface_set.h"
 #include "src/scene/pixel_view.h"
 #include "tests/occlusion/small_scenes.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline::test {
 

@@ -14,7 +14,7 @@
 #include "sightline/culling/visibility_octree_method.h"
 #include "tests/culling/culled_scene.h"
 #include "tests/culling/fake_sets.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {

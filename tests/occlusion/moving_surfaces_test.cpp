@@ -8,7 +8,7 @@
 #include <random>
 
 #include "tests/occlusion/surface_proofs.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/made_surfaces.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/rounds.h"

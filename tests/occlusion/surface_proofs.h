@@ -10,7 +10,7 @@
 #include "oracle/exact_visibility.h"
 #include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline::test {
 

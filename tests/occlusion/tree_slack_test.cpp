@@ -13,6 +13,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "tests/occlusion/small_scenes.h"
 #include "tests/support/exact_sight.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {
@@ -41,23 +42,11 @@ struct Facade {
         corners.emplace_back(at(p, z));
       }
     }
-    addTriangles(scene, corners, MaterialId(0u));
+    hand_made::addTriangles(scene, MaterialId(0u), corners);
   }
   void addRectangle(FlatPoint low, FlatPoint high, double z = -5) {
     const FlatPoint right{high[0], low[1]}, left{low[0], high[1]};
     add({{low, right, high}, {low, high, left}}, z);
-  }
-
-  static void addTriangles(Scene& to, const std::vector<Vec3f>& corners, MaterialId material) {
-    Object object;
-    object.first_index = static_cast<std::uint32_t>(to.indices.size());
-    object.index_count = static_cast<std::uint32_t>(corners.size());
-    object.material = material;
-    for (const Vec3f& corner : corners) {
-      to.indices.push_back(static_cast<std::uint32_t>(to.positions.size()));
-      to.positions.push_back(corner);
-    }
-    to.objects.push_back(object);
   }
 
   unsigned turn;
@@ -66,11 +55,9 @@ struct Facade {
 
 // Whether the view shows the point of a triangle that is added to the scene.
 bool showsPoint(Scene scene, const View& view, const std::vector<Vec3f>& triangle, const Vec3d& point) {
-  const auto both_sides = MaterialId(scene.materials.size());
-  scene.materials.push_back({});
-  scene.materials.back().double_sided = true;
-  Facade::addTriangles(scene, triangle, both_sides);
-  return ExactSight(scene.view(), view).reaches(point, ObjectId(scene.objects.size() - 1));
+  const MaterialId both_sides = hand_made::addMaterial(scene, Opacity::kOpaque, true);
+  const ObjectId object = hand_made::addTriangles(scene, both_sides, triangle);
+  return ExactSight(scene.view(), view).reaches(point, object);
 }
 
 // Asks trees of every variant, with the occluders in every order.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "oracle/exact_visibility.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {

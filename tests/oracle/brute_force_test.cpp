@@ -8,7 +8,7 @@
 
 #include "oracle/exact_visibility.h"
 #include "oracle/view_rays.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "oracle/exact_visibility.h"
-#include "tests/oracle/hand_made.h"
 #include "tests/support/exact_sight.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "oracle/exact_visibility.h"
-#include "tests/oracle/hand_made.h"
 #include "tests/support/exact_sight.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {

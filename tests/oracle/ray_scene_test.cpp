@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {

@@ -9,7 +9,7 @@
 #include <array>
 
 #include "oracle/split_mix.h"
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/rounds.h"
 
 namespace sightline {

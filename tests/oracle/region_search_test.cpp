@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/oracle/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {

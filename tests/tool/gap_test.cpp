@@ -7,6 +7,7 @@
 
 #include "oracle/exact_visibility.h"
 #include "sightline/scene/scene.h"
+#include "tests/support/hand_made.h"
 #include "tests/support/wide_ray.h"
 #include "tests/tool/run_tool.h"
 
@@ -85,17 +86,8 @@ Scene sceneOf(const Gap& gap) {
   Scene scene;
   scene.materials.emplace_back();
   for (const std::vector<Vec3f>& corners : gap.objects) {
-    Object object;
-    object.first_index = static_cast<std::uint32_t>(scene.indices.size());
-    object.index_count = static_cast<std::uint32_t>(corners.size());
-    object.material = MaterialId(0u);
-    for (const Vec3f& corner : corners) {
-      scene.indices.push_back(static_cast<std::uint32_t>(scene.positions.size()));
-      scene.positions.push_back(corner);
-    }
-    scene.objects.push_back(object);
+    hand_made::addTriangles(scene, MaterialId(0u), corners);
   }
-  updateBounds(scene);
   return scene;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
-// Small scenes made of quads, for the oracle's tests.
+// Small scenes, made of triangles and quads.
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "sightline/scene/scene.h"
@@ -15,6 +17,7 @@ inline MaterialId addMaterial(Scene& scene, Opacity opacity, bool double_sided) 
   return MaterialId(scene.materials.size() - 1);
 }
 
+// An object with corners of its own, three a triangle.
 inline ObjectId addTriangles(Scene& scene, MaterialId material, std::span<const Vec3f> corners) {
   Object object;
   object.first_index = static_cast<std::uint32_t>(scene.indices.size());
