@@ -19,9 +19,10 @@ struct ImportLimits {
   std::uint64_t objects = 16'000'000;     // of the scene
   std::uint64_t name_bytes = 1 << 30;     // of all objects' names
   std::uint64_t elements = 1 << 21;       // nodes, meshes, accessors, ... each
-  // Elements of accessors without bytes behind them (zeros by definition): of an accessor, and as vertices of
-  // all instances together.
+  // Accessors without bytes behind them (zeros by definition): elements of each, and vertices in them, all
+  // instances counted.
   std::uint64_t implied_elements = 1 << 22;
+  std::uint64_t implied_vertices = 1 << 22;
   std::uint64_t sparse_elements = 1 << 26;  // replaced ones, of all accessors together
   std::uint64_t camera_work = 1'000'000;  // of all animated cameras: frames times nodes above them, plus keys
 };

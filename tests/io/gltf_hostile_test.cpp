@@ -346,15 +346,19 @@ TEST(GltfHostile, TheLimitsCountEveryInstance) {
     const Result<Scene> scene = io::importGltf(glb.bytes(), "", "scene.glb", limits);
     return scene ? std::string() : scene.error().message;
   };
-  EXPECT_EQ(fault({.triangles = 3, .vertices = 9, .objects = 3, .implied_elements = 0}), "");
+  EXPECT_EQ(
+      fault({.triangles = 3, .vertices = 9, .objects = 3, .implied_elements = 0, .implied_vertices = 0}), "");
   EXPECT_NE(fault({.triangles = 2}).find("node 2: up to here the scene has 3 objects, 3 triangles"),
             std::string::npos);
   EXPECT_NE(fault({.objects = 2}).find("node 2: up to here the scene has 3 objects"), std::string::npos);
   EXPECT_NE(fault({.vertices = 8}).find("node 2: up to here the scene has 9 vertices"), std::string::npos);
   glb.json["accessors"][0].erase("bufferView");
-  EXPECT_EQ(fault({.implied_elements = 9}), "");
-  EXPECT_NE(fault({.implied_elements = 8}).find("9 vertices, 9 of them without a buffer view"),
+  EXPECT_EQ(fault({.implied_elements = 3, .implied_vertices = 9}), "");
+  EXPECT_NE(fault({.implied_vertices = 8}).find("9 vertices, 9 of them without a buffer view"),
             std::string::npos);
+  EXPECT_NE(
+      fault({.implied_elements = 2}).find("accessor 0: has 3 elements without a buffer view; at most 2"),
+      std::string::npos);
 }
 
 TEST(GltfHostile, ContainersThatLieAreRefused) {

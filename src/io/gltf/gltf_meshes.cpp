@@ -39,11 +39,11 @@ class ObjectAdder {
             document_.name, node, objects, triangles, name_bytes, limits.objects, limits.triangles,
             limits.name_bytes);
       }
-      if (vertices > limits.vertices || implied_vertices > limits.implied_elements) {
+      if (vertices > limits.vertices || implied_vertices > limits.implied_vertices) {
         return failure(
             "{}: node {}: up to here the scene has {} vertices, {} of them without a buffer view; at most {} "
             "and {} are read",
-            document_.name, node, vertices, implied_vertices, limits.vertices, limits.implied_elements);
+            document_.name, node, vertices, implied_vertices, limits.vertices, limits.implied_vertices);
       }
     }
     return Success{};
