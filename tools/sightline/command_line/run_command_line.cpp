@@ -14,6 +14,7 @@
 #include "tools/sightline/command_line/note.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/standard_streams.h"
 #include "tools/sightline/command_line/suggest.h"
 
 namespace sightline::tool {
