@@ -8,6 +8,14 @@
 #include "src/scene/usable_view.h"
 
 namespace sightline {
+namespace {
+
+// The most that setOrientation() leaves as the cosine between right and forward: a few roundings. Where the
+// hint is more than 7 degrees off the direction, or along an axis of space, the cross product is that good by
+// itself.
+constexpr double kPerpendicular = 0x1p-50;
+
+}  // namespace
 
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
   view.forward = normalized(forward);
@@ -18,6 +26,10 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
     right = cross(view.forward, other);
   }
   view.right = normalized(right);
+  // The nearer the direction is to the hint, the more digits of the cross product have cancelled out.
+  if (const double cosine = dot(view.right, view.forward); std::abs(cosine) > kPerpendicular) {
+    view.right = normalized(view.right - view.forward * cosine);
+  }
   view.up = cross(view.right, view.forward);
 }
 

@@ -76,6 +76,30 @@ TEST(Camera, OrientationSurvivesLookingAlongTheHint) {
   }
 }
 
+// From an ordinary hint to one that cannot be told from the direction; `off` is in radians.
+TEST(Camera, OrientationIsOrthonormalHoweverNearTheHintIs) {
+  constexpr double kFewRoundings = 0x1p-49;
+  std::mt19937 random(11);
+  for (double off = 1.0; off > 1e-18; off *= 0.5) {
+    for (int i = 0; i < 100; ++i) {
+      const Vec3d forward = normalized(randomVector(random, 5.0));
+      const Vec3d side = normalized(cross(forward, randomVector(random, 5.0)));
+      View view;
+      setOrientation(view, forward, forward * (i % 2 == 0 ? 2.0 : -2.0) + side * (2.0 * off));
+      for (const Vec3d& axis : {view.right, view.up, view.forward}) {
+        ASSERT_NEAR(length(axis), 1.0, kFewRoundings) << off;
+      }
+      ASSERT_NEAR(dot(view.right, view.forward), 0.0, kFewRoundings) << off;
+      ASSERT_NEAR(dot(view.right, view.up), 0.0, kFewRoundings) << off;
+      ASSERT_NEAR(dot(view.up, view.forward), 0.0, kFewRoundings) << off;
+      ASSERT_LT(dot(cross(view.right, view.up), view.forward), 0.0) << "right-handed";
+      if (off > 1e-7) {
+        ASSERT_GT(dot(view.up, side), 0.9) << off << ": up is the side of the hint";
+      }
+    }
+  }
+}
+
 TEST(Camera, UpIsTheSideOfTheHint) {
   View view;
   setOrientation(view, {0, -0.9, -1}, {0, 1, 0});
