@@ -415,16 +415,29 @@ std::uint32_t FusedOcclusion::componentOf(std::uint32_t panel) {
 }
 
 // Adds all panels that are joined with the component's first one within the shaft. False as soon as it is not
-// closed; some may be missing then. Most are not, so the way is towards the border of the surface first.
+// closed; some may be missing then. Most are not, so the way is towards the border of the surface first;
+// among panels that are equally far from it, it goes on from the last one, which is often still in the cache.
 bool FusedOcclusion::gather(std::uint32_t component) {
-  const std::size_t first = members_.size() - 1;
-  const auto later = [this](std::uint32_t a, std::uint32_t b) { return panels_.before(b, a); };
-  ahead_.assign(1, members_[first]);
-  followed_.extend(panels_.bounds[members_[first]]);
-  for (std::uint32_t looked_at = 0; !ahead_.empty(); ++looked_at) {
-    std::pop_heap(ahead_.begin(), ahead_.end(), later);
-    const std::uint32_t panel = ahead_.back();
-    ahead_.pop_back();
+  const auto lookAtLater = [this](std::uint32_t panel) {
+    const std::uint32_t steps = panels_.ranks[panel].steps;
+    ahead_[steps].push_back(panel);
+    nearest_ = std::min(nearest_, steps);
+    followed_.extend(panels_.bounds[panel]);
+  };
+  for (std::vector<std::uint32_t>& panels : ahead_) {
+    panels.clear();
+  }
+  nearest_ = kMostSteps;
+  lookAtLater(members_.back());
+  for (std::uint32_t looked_at = 0;; ++looked_at) {
+    while (ahead_[nearest_].empty()) {
+      if (nearest_ == kMostSteps) {
+        return true;
+      }
+      ++nearest_;
+    }
+    const std::uint32_t panel = ahead_[nearest_].back();
+    ahead_[nearest_].pop_back();
     if (looked_at == most_members_) {
       return false;
     }
@@ -459,12 +472,9 @@ bool FusedOcclusion::gather(std::uint32_t component) {
       }
       places_[beyond] = {question_, component};
       members_.push_back(beyond);
-      ahead_.push_back(beyond);
-      std::push_heap(ahead_.begin(), ahead_.end(), later);
-      followed_.extend(panels_.bounds[beyond]);
+      lookAtLater(beyond);
     }
   }
-  return true;
 }
 
 // Whether the edge is outside the shaft.

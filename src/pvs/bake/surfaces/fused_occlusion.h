@@ -176,7 +176,9 @@ class FusedOcclusion {
   std::vector<std::uint32_t> members_;        // panels, by component
   std::vector<Component> components_before_;  // those of the question that is asked again
   std::vector<std::uint32_t> members_before_;
-  std::vector<std::uint32_t> ahead_;  // members whose edges have not been looked at; a heap
+  // Members whose edges have not been looked at, by PanelRank::steps; none has fewer steps than nearest_.
+  std::array<std::vector<std::uint32_t>, kMostSteps + 1> ahead_;
+  std::uint32_t nearest_ = 0;
   struct Place {
     std::uint32_t question = 0, component = 0;
   };

@@ -54,8 +54,8 @@ struct Panel {
   std::uint32_t object = 0;
 };
 
-// In which order panels are taken, whatever their numbers are: which objects a question leaves out depends on
-// it, and has to be the same when other objects of the scene have changed.
+// In which order panels that a line crosses are taken, whatever their numbers are: which objects a question
+// leaves out depends on it, and has to be the same when other objects of the scene have changed.
 struct PanelRank {
   // Over how many joined edges the way to a border of the surface leads, kMostSteps at most: a change of a
   // border is no change of what is far from it.
