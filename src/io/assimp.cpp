@@ -8,12 +8,14 @@
 #include <assimp/config.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <exception>
 #include <new>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sightline/math/mat4.h"
@@ -33,9 +35,22 @@ constexpr unsigned char kSceneFollows = 1, kErrorFollows = 2;  // what an answer
 constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
                             aiProcess_JoinIdenticalVertices;
 constexpr int kUnusedComponents = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_COLORS | aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS |
-                                  aiComponent_ANIMATIONS | aiComponent_TEXTURES | aiComponent_LIGHTS |
-                                  aiComponent_CAMERAS;
+                                  aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS;
+
+// A .ply has no materials: only the colours of its vertices say that it is glass. Those of other files hold
+// masks and the like as well, and are not looked at.
+bool coloursCount(const std::string& file) {
+  const std::size_t begin = file.size() - std::min<std::size_t>(file.size(), 4);
+  return std::ranges::equal(file.substr(begin), std::string_view(".ply"), {},
+                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+}
+
+bool hasSeeThroughVertices(const aiMesh& mesh) {
+  const aiColor4D* const colours = mesh.mColors[0];
+  return colours != nullptr &&
+         std::any_of(colours, colours + mesh.mNumVertices, [](const aiColor4D& c) { return !(c.a >= 1.0f); });
+}
 
 Mat4 matrixFrom(const aiMatrix4x4& source) {
   Mat4 matrix;
@@ -75,8 +90,16 @@ class AssimpConverter {
       : source_(source), name_(name), limits_(limits), builder_(limits) {}
 
   Result<Scene> convert() {
+    std::vector<bool> see_through(source_.mNumMaterials, false);
+    for (const aiMesh* mesh : std::span(source_.mMeshes, source_.mNumMeshes)) {
+      if (mesh->mMaterialIndex < see_through.size() && hasSeeThroughVertices(*mesh)) {
+        see_through[mesh->mMaterialIndex] = true;
+      }
+    }
     for (unsigned i = 0; i < source_.mNumMaterials; ++i) {
-      builder_.addMaterial(materialFrom(*source_.mMaterials[i], i));
+      Material material = materialFrom(*source_.mMaterials[i], i);
+      material.opacity = see_through[i] ? Opacity::kBlended : material.opacity;
+      builder_.addMaterial(std::move(material));
     }
     // Depth first; Assimp's nodes form a tree, each owning its children.
     std::vector<Open> open{{source_.mRootNode, Mat4{}}};
@@ -188,7 +211,8 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
   // Assimp throws when memory runs out; nothing leaves here.
   try {
     Assimp::Importer importer;
-    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kUnusedComponents);
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                                kUnusedComponents | (coloursCount(file) ? 0 : int{aiComponent_COLORS}));
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* const source = importer.ReadFile(file, kSteps);
     if (source == nullptr || source->mRootNode == nullptr ||

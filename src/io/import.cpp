@@ -36,15 +36,24 @@ Result<Scene> importScene(const std::string& file) {
         "{}: files ending in \"{}\" are not read; .glb, .gltf, .obj, .ply, .stl, .fbx, .dae and others are",
         file, extension);
   }
-  if (extension == ".ply") {
-    const Status whole = checkPlyIsWhole(*bytes, file);
-    if (!whole) {
-      return whole.error();
+  const bool is_ply = extension == ".ply";
+  if (is_ply) {
+    const Status readable = checkPly(*bytes, file);
+    if (!readable) {
+      return readable.error();
     }
   }
+  // Some of the faces may be glass then.
+  const bool may_be_see_through = is_ply && plyFacesHaveAlpha(*bytes);
   const std::uint64_t file_bytes = bytes->size();
   std::string().swap(*bytes);  // frees it: Assimp reads the file itself, with the others that it names
-  return importAssimpInChild(file, file_bytes, ImportLimits{});
+  Result<Scene> scene = importAssimpInChild(file, file_bytes, ImportLimits{});
+  if (scene && may_be_see_through) {
+    for (Material& material : scene->materials) {
+      material.opacity = Opacity::kBlended;
+    }
+  }
+  return scene;
 }
 
 }  // namespace sightline

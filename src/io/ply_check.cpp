@@ -14,6 +14,8 @@ struct Header {
   double elements = 0.0;   // of all kinds together
   double min_bytes = 0.0;  // of all elements in binary form; lists taken as empty
   std::size_t size = 0;    // bytes of the header itself; 0: not understood
+  bool has_strips = false;
+  bool faces_have_alpha = false;
 };
 
 double sizeOf(const std::string& type) {
@@ -37,6 +39,7 @@ Header readHeader(std::string_view bytes) {
   }
   header.size = line_end + 1;
   std::istringstream lines{std::string(bytes.substr(0, end))};
+  std::string element;
   double count = 0.0;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -45,12 +48,17 @@ Header readHeader(std::string_view bytes) {
     if (key == "format") {
       header.ascii = type == "ascii";
     } else if (key == "element" && words >> count && count > 0.0) {
+      element = type;
       header.elements += count;
+      header.has_strips = header.has_strips || element == "tristrips";
     } else if (key == "property") {
-      if (type == "list") {
-        words >> type;  // of the length
+      const bool list = type == "list";
+      if (list) {
+        words >> type >> name;  // of the length, and of what is listed
       }
       header.min_bytes += count * sizeOf(type);
+      words >> name;
+      header.faces_have_alpha = header.faces_have_alpha || (element == "face" && !list && name == "alpha");
     }
   }
   return header;
@@ -58,10 +66,18 @@ Header readHeader(std::string_view bytes) {
 
 }  // namespace
 
-Status checkPlyIsWhole(std::string_view bytes, const std::string& name) {
+bool plyFacesHaveAlpha(std::string_view bytes) {
+  return readHeader(bytes).faces_have_alpha;
+}
+
+Status checkPly(std::string_view bytes, const std::string& name) {
   const Header header = readHeader(bytes);
   if (header.size == 0) {
     return failure("{}: its header has no end: it is not a whole .ply file", name);
+  }
+  if (header.has_strips) {
+    return failure("{}: has triangle strips (element tristrips), which are not read; write it with faces",
+                   name);
   }
   const std::string_view body = bytes.substr(header.size);
   if (!header.ascii) {

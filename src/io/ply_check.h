@@ -7,8 +7,12 @@
 
 namespace sightline::io {
 
-// Whether a .ply holds all the elements that its header announces. Assimp reads on past the end of a file
-// that is cut off and makes triangles of what is not there.
-Status checkPlyIsWhole(std::string_view bytes, const std::string& name);
+// An error where Assimp would make other triangles of a .ply than it holds. Of a file that is cut off, it
+// reads on past the end and makes triangles of what is not there; of triangle strips, it takes one triangle
+// each.
+Status checkPly(std::string_view bytes, const std::string& name);
+
+// Whether its faces say how opaque they are, which Assimp does not hand over.
+bool plyFacesHaveAlpha(std::string_view bytes);
 
 }  // namespace sightline::io

@@ -153,6 +153,39 @@ TEST_F(Files, PlyIsReadInTriangles) {
   EXPECT_EQ(scene->objects[0].bounds, (Box{{0, 0, 0}, {2, 3, 0}}));
 }
 
+// A .ply has no materials, so it is glass if any of its vertices or faces may be.
+TEST_F(Files, PlyWithAlphaIsSeeThrough) {
+  const auto opacityWith = [this](const std::string& of_vertex, const std::string& of_face,
+                                  const std::string& last_vertex, const std::string& face) {
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+        of_vertex + "element face 1\nproperty list uchar int vertex_indices\n" + of_face +
+        "end_header\n0 0 0 9 9 9 255\n2 0 0 9 9 9 255\n2 3 0 9 9 9 " + last_vertex + "\n3 0 1 2" + face +
+        "\n";
+    const Result<Scene> scene = importScene(folder.write("a.ply", ply));
+    EXPECT_TRUE(scene) << scene.error().message;
+    return scene ? scene->view().materialOf(scene->objects[0]).opacity : Opacity::kOpaque;
+  };
+  const std::string colour = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string alpha = "property uchar alpha\n", other = "property uchar quality\n";
+  EXPECT_EQ(opacityWith(colour + alpha, "", "255", ""), Opacity::kOpaque);
+  EXPECT_EQ(opacityWith(colour + alpha, "", "254", ""), Opacity::kBlended);
+  EXPECT_EQ(opacityWith(colour + other, "", "60", ""), Opacity::kOpaque);
+  EXPECT_EQ(opacityWith(colour + alpha, other, "255", " 60"), Opacity::kOpaque);
+  EXPECT_EQ(opacityWith(colour + alpha, alpha, "255", " 60"), Opacity::kBlended);
+}
+
+// Of a strip, Assimp would hand over its last triangle alone, and its box would not hold what is shown.
+TEST_F(Files, PlyWithStripsIsRefused) {
+  const Result<Scene> scene = importScene(folder.write(
+      "strip.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n2 0 0\n0 3 0\n2 3 0\n4 0 1 2 3\n"));
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("tristrips"), std::string::npos) << scene.error().message;
+}
+
 TEST_F(Files, PlyThatIsCutOffIsRefused) {
   const std::string whole = kPly;
   const std::size_t last_line = whole.find("4 0 1 2 3");
