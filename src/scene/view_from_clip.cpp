@@ -149,7 +149,8 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   if (length(rows.z.normal - depth.normal * a) > kTilt * rows.z.length()) {
     return tiltedDepths();
   }
-  const double b = rows.z.offset - a * depth.offset;
+  // Its value at the eye: rounding may have turned it by a little, about the eye and not about the origin.
+  const double b = dot(rows.z.normal, view.eye) + rows.z.offset;
   view.z_near = b / (range.near * q - a);
   view.z_far = farOf(view, rows.z - rows.w * range.far);
   if (!(view.z_near > 0.0 && std::isfinite(view.z_near))) {

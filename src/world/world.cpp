@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -41,6 +42,11 @@ bool same(const Mat4& a, const Mat4& b) {
 }
 
 }  // namespace
+
+std::uint64_t newWorldNumber() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
 
 MeshExtent::MeshExtent(const Box& bounds) : known(bounds.wellFormed()) {
   if (known) {

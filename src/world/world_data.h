@@ -95,6 +95,9 @@ inline Mat4 relativeTo(const Vec3d& origin, Mat4 world_from_any) {
   return world_from_any;
 }
 
+// A number that no other World of this process has.
+std::uint64_t newWorldNumber();
+
 struct WorldData {
   // Whether the instance's own surfaces may be drawn.
   bool hides(std::uint32_t id) const {
@@ -128,6 +131,7 @@ struct WorldData {
   std::size_t count = 0;        // instances that are there
   std::size_t in_no_group = 0;  // of these, with no bit of InstanceData::groups
   std::uint64_t version = 0;    // grows with each change
+  std::uint64_t number = newWorldNumber();
   std::vector<Joined> joins;
   std::vector<std::uint32_t> free_joins;
   std::vector<BakedObjects> sets;

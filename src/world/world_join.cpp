@@ -70,7 +70,7 @@ bool isSolid(const Mat4& m) {
 WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings,
                              const ParallelFor& parallel_for) const {
   const WorldData& own = *data_;
-  WorldJoin join;
+  WorldJoin join{.world = own.number};
   Box all;
   for (const InstanceId id : instances) {
     if (has(id) && own.hides(id.value) && boundsOf(id).wellFormed() &&
@@ -132,21 +132,24 @@ JoinId World::use(WorldJoin given) {
       }
     }
   });
-  // First all members, so that what one of them leaves alone is known to be a member.
+  // All members come first, and what is no member goes, so that what one of them leaves alone is known to be
+  // a member.
   for (std::uint32_t object = 0; object < join.instances.size(); ++object) {
     const InstanceId id = join.instances[object];
-    if (has(id) && own.instances[id.value].version == join.versions[object]) {
+    if (join.world == own.number && has(id) && own.instances[id.value].version == join.versions[object]) {
       own.leaveJoin(id.value);
       InstanceData& member = own.instances[id.value];
       member.join = number;
       member.object = object;
       member.alone = false;
       joined.groups &= member.groups;
+    } else {
+      joined.join.instances[object] = InstanceId();
     }
   }
   for (std::uint32_t object = 0; object < join.instances.size(); ++object) {
     const InstanceId id = join.instances[object];
-    if (!has(id) || own.instances[id.value].join != number || own.instances[id.value].object != object) {
+    if (!id.valid() || own.instances[id.value].join != number || own.instances[id.value].object != object) {
       joined.join.instances[object] = InstanceId();
       own.leave(joined, object);
     }

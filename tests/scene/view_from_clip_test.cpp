@@ -354,6 +354,31 @@ TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
   EXPECT_GT(compared, 100000);
 }
 
+// Rounding turns row z of a product in single precision by up to 1e-7, so that what it says far from the
+// origin is of no use at the eye.
+TEST(ViewFromClip, HasTheNearPlaneOfAMatrixOfSinglePrecisionFarFromTheOrigin) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(seed);
+    View view;
+    view.eye = random.point(5000.0);
+    setOrientation(view, random.point(1.0), {0, 1, 0});
+    view.tan_half_fovy = 0.7;
+    view.aspect = 16.0 / 9.0;
+    view.z_near = 0.1;
+    view.z_far = 1000.0;
+    const ClipDepth depth = static_cast<ClipDepth>(seed % 3);
+    const Mat4 clip = inSinglePrecision(withDepth(clipFromScene(view), depth));
+    const Result<View> found = viewFromClip(clip, {.depth = depth});
+    ASSERT_TRUE(found) << "seed " << seed << ": " << found.error().message;
+    // The matrix may tilt the near plane by 1e-6: that is so much at the border of the picture.
+    const double allowed = 1e-6 * found->z_near + 1e-12 * length(found->eye);
+    for (const double beyond : {-2.0 * allowed, 2.0 * allowed}) {
+      const Vec3d point = found->eye + found->forward * (found->z_near + beyond);
+      EXPECT_EQ(margins(clip, depth, point)[4] > 0.0L, beyond > 0.0) << "seed " << seed;
+    }
+  }
+}
+
 // The far plane of such a matrix is tilted: it is the difference of two rows that are nearly the same.
 TEST(ViewFromClip, ShowsAllThatAMatrixOfSinglePrecisionShowsBeforeItsFarPlane) {
   std::size_t shown = 0;

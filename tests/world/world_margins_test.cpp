@@ -7,7 +7,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "tests/culling/fake_sets.h"
@@ -144,6 +147,40 @@ TEST(WorldMargins, AJoinOfRoundedPositionsHidesOnlyIfThatIsAllowed) {
     }
     EXPECT_EQ(keeps(culler, behind_the_seam), allowed == 0.0);
   }
+}
+
+// As where a level is left while a thread still prepares its join.
+TEST(WorldMargins, AJoinOfAnotherWorldHidesNothing) {
+  Mat4 behind;
+  behind(2, 3) = -14.0;
+  const auto level = [&behind](double x) {
+    auto story = std::make_unique<Story>(allShapes());
+    const std::vector<InstanceId> ids{story->add(1, panelTo(x - 10.0, x, 20.0)),
+                                      story->add(1, panelTo(x, x + 10.0, 20.0)), story->add(0, behind)};
+    return std::pair(std::move(story), ids);
+  };
+  const auto [old_level, old_ids] = level(0.0);
+  const WorldJoin join = old_level->world.prepareJoin(std::span(old_ids).first(2));
+  ASSERT_EQ(join.instances.size(), 2u);
+  const View view = viewFrom({0, 0, 0}, {0, 0, -1});
+  const auto keepsCrate = [&](Story& story, InstanceId crate) {
+    WorldCuller culler;
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    return keeps(culler, crate);
+  };
+  const auto [next_level, next_ids] = level(-30.0);
+  ASSERT_EQ(next_ids, old_ids);
+  next_level->world.use(join);
+  EXPECT_TRUE(keepsCrate(*next_level, next_ids[2]));
+  Story empty(allShapes());
+  empty.world.use(join);
+  EXPECT_TRUE(keepsCrate(empty, empty.add(0, behind)));
+  // A world that was moved is the same one.
+  World moved = std::move(old_level->world);
+  moved.use(join);
+  old_level->world = std::move(moved);
+  EXPECT_FALSE(keepsCrate(*old_level, old_ids[2]));
 }
 
 // Instances of a mesh, turned and scaled, around an origin.

@@ -64,6 +64,7 @@ struct Instance {
 struct WorldJoin {
   std::vector<InstanceId> instances{};
   std::vector<std::uint64_t> versions{};  // of the instances
+  std::uint64_t world = 0;                // the number of their World
   Vec3d origin{};                         // of the surfaces, world space
   SurfaceSet surfaces{};                  // ObjectId is the index into `instances`
   // Metres: how far, at most, a vertex of the surfaces is from where its matrix takes it, as far as double
@@ -144,7 +145,8 @@ class World {
   // as findSurfaces(), during which the world may be culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor) const;
-  // Instances that have changed since prepareJoin() leave the join at once.
+  // Instances that have changed since prepareJoin() leave the join at once, and all if that was of another
+  // World, such as the last level's.
   JoinId use(WorldJoin join);
   // Its instances hide by their own meshes again.
   void drop(JoinId join);
