@@ -73,7 +73,8 @@ void WorldData::leaveSets(std::uint32_t id) {
 
 }  // namespace world
 
-SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin) {
+SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin,
+                      std::span<const ObjectId> doors) {
   WorldData& own = *data_;
   // A number is never used again: a culler may not have been told that its sets were dropped.
   const auto number = static_cast<std::uint32_t>(own.sets.size());
@@ -81,11 +82,20 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
   own.sets[number] = {
       .there = true, .boxes = hashOfBoxes(boxes), .origin = baked_origin, .groups = 0xffffffffu};
   own.sets[number].instances.resize(boxes.objects.size());
+  std::vector<bool> is_door(boxes.objects.size(), false);
+  for (const ObjectId door : doors) {
+    if (door.value < is_door.size()) {
+      is_door[door.value] = true;
+    }
+  }
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
     if (!boxes.leaf(node)) {
       continue;
     }
     for (const ObjectId object : boxes.objectsBelow(node)) {
+      if (is_door[object.value]) {
+        continue;
+      }
       const InstanceId id = object.value < objects.size() ? objects[object.value] : InstanceId();
       if (!has(id) || !own.mayBeBaked(id.value) ||
           !standsWhereBaked(own.meshes[own.instances[id.value].mesh].extent,

@@ -156,6 +156,46 @@ TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
   EXPECT_TRUE(keepsAll());
 }
 
+// Sets hold while doors are open, whatever these do.
+TEST(WorldSets, DoorsAreNoTombstones) {
+  Chance chance(5);
+  Baked baked(chance, 40);
+  World& world = baked.story.world;
+  fake_sets::FakeSets sets(baked.boxes);
+  std::vector<bool> members(baked.ids.size(), false);
+  members[7] = members[8] = members[9] = true;  // the doors, which each set names
+  sets.use(1, members);
+  View all = baked.view;
+  all.tan_half_fovy = 8.0;
+  all.eye = {0, 1.5, 60};
+  const std::vector<ObjectId> doors{ObjectId(7u), ObjectId(8u), ObjectId(9u), ObjectId(4711u)};
+  baked.story.show(baked.ids[9], false);
+  const SetsId id = world.useSets(baked.ids, sets.boxes(), {}, doors);
+  WorldCuller culler({.occlusion = false});
+  culler.useSets(id, &sets);
+  const auto kept = [&] {
+    culler.cull(world, all);
+    return std::vector(culler.visible().begin(), culler.visible().end());
+  };
+  EXPECT_EQ(world.tombstones(id), 0u);
+  EXPECT_EQ(kept(), (std::vector{baked.ids[7], baked.ids[8]}));
+  Mat4 open = baked.story.told.at(baked.ids[7].value).world_from_mesh;
+  open(0, 3) += 0.5;
+  baked.story.move(baked.ids[7], open);
+  baked.story.remove(baked.ids[8]);
+  baked.story.show(baked.ids[9], true);
+  EXPECT_EQ(world.tombstones(id), 0u);
+  EXPECT_EQ(kept(), (std::vector{baked.ids[7], baked.ids[9]}));
+  // Without their names, they are tombstones of all sets.
+  WorldCuller plain({.occlusion = false});
+  plain.cull(world, all);
+  const SetsId unnamed = world.useSets(baked.ids, sets.boxes());
+  EXPECT_EQ(world.tombstones(unnamed), 2u);
+  culler.useSets(id, nullptr);
+  culler.useSets(unnamed, &sets);
+  EXPECT_TRUE(std::ranges::equal(kept(), plain.visible()));
+}
+
 // A cell of the world that is streamed in elsewhere than it was baked, and goes again.
 TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
   for (const Vec3d& place : {Vec3d(0, 0, 0), Vec3d(4096, 0, -8192), Vec3d(1 << 20, 64, 1 << 20)}) {

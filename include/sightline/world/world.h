@@ -171,7 +171,13 @@ class World {
   // An instance counts as unmoved if its box is off the baked one, along each axis, by at most 2^-20 of the
   // terms of that coordinate in the baked scene, as rounding to single precision may leave it: a millimetre
   // at a kilometre from that scene's origin.
-  SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {});
+  //
+  // doors: those that the sets were baked with (SightFile::doors). They may move, be hidden and removed
+  // without becoming tombstones, since the sets hold while all of them are open, and are always tested like
+  // what came. Where the look-up is told that some are closed (SetQuery::setClosedDoors), it is for the
+  // caller to see to that these stand where they were baked.
+  SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {},
+                 std::span<const ObjectId> doors = {});
   void dropSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
