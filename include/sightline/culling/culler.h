@@ -66,8 +66,9 @@ class Culler {
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;
 
-  // One frame; view, boxes and occluders are in scene space. Does not fail, and does not allocate after a few
-  // frames; with a view that validate() refuses, everything is visible (CullStats::view_fault).
+  // One frame; view, boxes and occluders are in scene space. Does not fail, and allocates nothing once the
+  // storage has grown to what the views need: a view that shows more than all before it may let it grow once
+  // more. With a view that validate() refuses, everything is visible (CullStats::view_fault).
   // dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them. moving:
   // occluders of this frame only (makeOccluders), all of which are used in addition by all methods that have
   // occluders. They need to outlive the call only. moving_surfaces: whole surfaces that move, drawn by the
