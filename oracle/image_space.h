@@ -11,6 +11,7 @@
 // Whatever is nearer has a greater *nearness*: in a perspective view the reciprocal of the distance in
 // lengths of d, in an orthographic view minus the depth. In both, the nearness of a plane is linear in d.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -85,6 +86,9 @@ class ImageSpace {
   // eye and, in an orthographic view, scene::sightDirection() alone, as the exact direction does: axes may be
   // off by single-precision rounding.
   ViewRay lineOfSight(const Vec3d& direction) const;
+  // How far its origin may be off, metres, besides the rounding of its own coordinates: coordinates of a
+  // direction are rounded as those are that are as large as an orthographic picture.
+  double originSlack() const { return view_.orthographic ? 0x1p-36 * std::abs(last_) : 0.0; }
   // About the same line from the near plane, by the view's axes.
   ViewRay ray(const Vec3d& direction) const;
   // The direction of a point in space given in double precision: rounded in an orthographic view.

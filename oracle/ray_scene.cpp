@@ -1,9 +1,21 @@
 #include "oracle/ray_scene.h"
 
+#include <cmath>
+
 namespace sightline {
 namespace {
 
 constexpr std::uint64_t kManyTriangles = 4'000'000;  // above this count, prefer less memory to more speed
+
+// Embree takes coordinates up to the square root of the largest number, and may end the program at others.
+constexpr float kFarthestRay = 1e18f;
+
+// Whether Embree may trace the ray. Others meet nothing, and what they might have shown is left to the search
+// that follows rays.
+bool isTraceable(const FloatRay& ray) {
+  const auto near = [](float x) { return std::abs(x) <= kFarthestRay; };
+  return near(ray.origin.x) && near(ray.origin.y) && near(ray.origin.z) && isFinite(ray.direction);
+}
 
 Vec3d normalOf(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
@@ -147,7 +159,7 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
   alignas(64) int valid[kBatch];
   setRays(rays, count, packet);
   for (std::uint32_t i = 0; i < kBatch; ++i) {
-    valid[i] = i < count ? -1 : 0;
+    valid[i] = i < count && isTraceable(rays[i]) ? -1 : 0;
   }
   CollectContext context{};
   rtcInitIntersectContext(&context.base);
@@ -156,7 +168,7 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
   rtcIntersect16(valid, opaque_, &context.base, &packet);
   for (std::uint32_t i = 0; i < count; ++i) {
     for (const Group& group : groups_) {
-      if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID && group.opaque &&
+      if (valid[i] != 0 && packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID && group.opaque &&
           packet.hit.geomID[i] == group.geometry_id) {
         const std::uint32_t prim = packet.hit.primID[i];
         hits.push_back({i, ObjectId(group.object_of_prim[prim]), packet.ray.tfar[i],
@@ -169,6 +181,9 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
   // Embree traces it in parts, loses the ids of the rays, and also traces those that are not valid: the
   // filter could not tell which ray it is called for.
   for (std::uint32_t i = 0; i < count && has_see_through_; ++i) {
+    if (valid[i] == 0) {
+      continue;
+    }
     context.ray = i;
     RTCRayHit ray = rtcGetRayHitFromRayHitN(reinterpret_cast<RTCRayHitN*>(&packet), kBatch, i);
     rtcIntersect1(see_through_, &context.base, &ray);

@@ -10,10 +10,9 @@ namespace sightline {
 
 // Widened by far more than the rounding of this test and of a direction in double precision, which over the
 // distance from the origin to the box moves a ray by a fraction of the coordinates of both.
-bool TriangleTree::mayIntersect(const Vec3d& origin, const Vec3d& direction, const Box& box) {
-  const double slack =
-      1e-9 * (maxComponent(abs(origin)) + maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))))) +
-      1e-39;
+bool TriangleTree::mayIntersect(const Vec3d& origin, const Vec3d& direction, double slack, const Box& box) {
+  slack += 1e-9 * (maxComponent(abs(origin)) + maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))))) +
+           1e-39;
   double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min[axis] - slack - origin[axis], high = box.max[axis] + slack - origin[axis];

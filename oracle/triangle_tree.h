@@ -32,8 +32,9 @@ class TriangleTree {
   std::uint32_t rootOf(ObjectId object) const { return object_roots_[object.value]; }
 
   // Calls visit(leaf) for all triangles whose boxes the ray from `origin` may intersect, beyond rounding.
+  // slack: how far the origin may be off, besides the rounding of its coordinates.
   template <typename Visit>
-  void alongRay(const Vec3d& origin, const Vec3d& direction, Visit&& visit) const {
+  void alongRay(const Vec3d& origin, const Vec3d& direction, double slack, Visit&& visit) const {
     std::vector<std::uint32_t> open;
     if (root_ != kNoNode) {
       open.push_back(root_);
@@ -41,7 +42,7 @@ class TriangleTree {
     while (!open.empty()) {
       const Node& node = nodes_[open.back()];
       open.pop_back();
-      if (!mayIntersect(origin, direction, node.box)) {
+      if (!mayIntersect(origin, direction, slack, node.box)) {
         continue;
       }
       if (node.isLeaf()) {
@@ -53,7 +54,7 @@ class TriangleTree {
   }
 
  private:
-  static bool mayIntersect(const Vec3d& origin, const Vec3d& direction, const Box& box);
+  static bool mayIntersect(const Vec3d& origin, const Vec3d& direction, double slack, const Box& box);
   std::uint32_t join(std::vector<std::uint32_t>& parts);
 
   std::vector<Node> nodes_;

@@ -459,16 +459,17 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
 std::optional<VisibilityProof::Triangle> VisibilityProof::blockerOf(const Target& target, Corner direction) {
   std::optional<Triangle> found;
   const ViewRay line = space_.lineOfSight(figures_.direction(direction));
-  scene_.tree.alongRay(line.origin, line.direction, [&](const TriangleTree::Node& leaf) {
-    const Triangle blocker{leaf.first_index, leaf.object};
-    if (found || leaf.first_index == target.first_index || !appearance(blocker).shown ||
-        !appearance(blocker).occludes || !contains(appearance(blocker).region, direction)) {
-      return;
-    }
-    if (figures_.side(hiddenBy(blocker, target).lines.back(), direction) > 0) {
-      found = blocker;
-    }
-  });
+  scene_.tree.alongRay(
+      line.origin, line.direction, space_.originSlack(), [&](const TriangleTree::Node& leaf) {
+        const Triangle blocker{leaf.first_index, leaf.object};
+        if (found || leaf.first_index == target.first_index || !appearance(blocker).shown ||
+            !appearance(blocker).occludes || !contains(appearance(blocker).region, direction)) {
+          return;
+        }
+        if (figures_.side(hiddenBy(blocker, target).lines.back(), direction) > 0) {
+          found = blocker;
+        }
+      });
   return found;
 }
 
@@ -487,17 +488,18 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
   std::vector<std::uint32_t> own;
   std::vector<Depth> opaque;
   const ViewRay line = space_.lineOfSight(figures_.direction(direction));
-  scene_.tree.alongRay(line.origin, line.direction, [&](const TriangleTree::Node& leaf) {
-    const Appearance& shown = appearance({leaf.first_index, leaf.object});
-    if (shown.shown && contains(shown.region, direction)) {
-      if (leaf.object == object) {
-        own.push_back(leaf.first_index);
-      }
-      if (shown.occludes) {
-        opaque.push_back(shown.depth);
-      }
-    }
-  });
+  scene_.tree.alongRay(line.origin, line.direction, space_.originSlack(),
+                       [&](const TriangleTree::Node& leaf) {
+                         const Appearance& shown = appearance({leaf.first_index, leaf.object});
+                         if (shown.shown && contains(shown.region, direction)) {
+                           if (leaf.object == object) {
+                             own.push_back(leaf.first_index);
+                           }
+                           if (shown.occludes) {
+                             opaque.push_back(shown.depth);
+                           }
+                         }
+                       });
   const bool has_far = std::isfinite(space_.view().z_far);
   for (const std::uint32_t first_index : own) {
     const Depth depth = appearances_.at(first_index).depth;

@@ -38,7 +38,7 @@ struct ProofScene {
 // Proofs for one view. Not for several threads at once.
 class VisibilityProof {
  public:
-  // All three must outlive this object. The view must be one that validate() accepts.
+  // All three must outlive this object. The view must be as validate() returns it.
   VisibilityProof(const ProofScene& scene, const RayScene& rays, const View& view);
 
   // Gives up after about this many batches of rays.

@@ -132,6 +132,41 @@ TEST(ExactVisibility, OrthographicRaysAreParallel) {
   EXPECT_EQ(f.reached(64), Ids({kFirst, kThird}));
 }
 
+// Of such a picture, a direction tells where it meets the walls only to a part of the picture's size.
+TEST(ExactVisibility, PicturesOfAnyHeightShowTheSame) {
+  for (const double height : {0.1, 1e3, 1e9, 1e12, 1e14, 1e16}) {
+    for (int turn = 0; turn < 20; ++turn) {
+      Fixture f;
+      const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, true);
+      addWall(f.scene, opaque, -0.01f, -0.001f, 0.001f, -0.001f, 0.001f);
+      addWall(f.scene, opaque, -0.0105f, -0.0001f, 0.0001f, -0.0001f, 0.0001f);
+      f.view.orthographic = true;
+      f.view.ortho_height = height;
+      f.view.eye = {1e-4 * turn, 0.0023, -1e-3};
+      f.view.z_near = 1e-4;
+      setOrientation(f.view, {0.37 - 0.03 * turn, -0.017 * turn, -1.0}, {0, 1, 0});
+      const ExactVisibility oracle(f.scene.view());
+      const std::array<ObjectId, 2> both{kFirst, kSecond};
+      const std::vector<Decision> decisions = oracle.decide(f.view, both, 100'000);
+      EXPECT_EQ(decisions[0].verdict, Verdict::kVisible) << height << " " << turn;
+      EXPECT_EQ(decisions[1].verdict, Verdict::kHidden) << height << " " << turn;
+    }
+  }
+}
+
+// So far away, single precision cannot follow rays.
+TEST(ExactVisibility, EyesAsFarAwayAsAnyNumberSeeNothingByRays) {
+  Fixture f;
+  addWall(f.scene, addMaterial(f.scene, Opacity::kOpaque, true), -10, -5, 5, -5, 5);
+  addWall(f.scene, addMaterial(f.scene, Opacity::kBlended, true), -9, -5, 5, -5, 5);
+  for (const double far_away : {1.7e18, 1.9e18, 1e37, 1e40, 1e300}) {
+    f.view.eye = {0, 0, far_away};
+    f.view.z_far = 2.0 * far_away;
+    const ExactVisibility oracle(f.scene.view());
+    EXPECT_TRUE(oracle.visibleThroughPixels(f.view, 8, 8).empty()) << far_away;
+  }
+}
+
 TEST(ExactVisibility, ObjectsWithoutTrianglesOrWithNonFiniteOnesDoNotCount) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
