@@ -36,13 +36,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string_view text = textOf(data, size);
   const char* const format = kFormats[takeByte(text) % kFormats.size()];
   const std::string file = folder().write(std::string("fuzz") + format, text);
-  const Result<Scene> in_child = io::importAssimpInChild(file, text.size(), kLimits, /*most_seconds=*/1);
+  io::AssimpFindings found, found_here;
+  const Result<Scene> in_child =
+      io::importAssimpInChild(file, text.size(), kLimits, found, /*most_seconds=*/1);
   if (!in_child) {
     requireOneLine(in_child.error());
     return 0;
   }
   requireSound(*in_child);
-  const Result<Scene> here = io::importAssimp(file, kLimits);
-  require(here && here->positions == in_child->positions && here->indices == in_child->indices);
+  const Result<Scene> here = io::importAssimp(file, kLimits, found_here);
+  require(here && found.inexact_polygons == found_here.inexact_polygons &&
+          here->positions == in_child->positions && here->indices == in_child->indices);
   return 0;
 }

@@ -19,8 +19,10 @@
 #include <vector>
 
 #include "sightline/math/mat4.h"
+#include "src/base/byte_stream.h"
 #include "src/io/child_process.h"
 #include "src/io/failure.h"
+#include "src/io/polygon_triangles.h"
 #include "src/io/scene_bytes.h"
 
 namespace sightline::io {
@@ -32,8 +34,9 @@ constexpr std::uint64_t kReaderBytes = 1024 * 1024 * 1024, kReaderBytesEach = 10
 constexpr std::uint64_t kReaderSeconds = 60, kReaderBytesInSecond = 100'000;
 constexpr unsigned char kSceneFollows = 1, kErrorFollows = 2;  // what an answer of that process begins with
 
-constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
-                            aiProcess_JoinIdenticalVertices;
+// Not aiProcess_Triangulate: where a corner lies on a diagonal, its triangles cover what the polygon does
+// not. Not aiProcess_SortByPType either, which divides meshes of triangles and other polygons.
+constexpr unsigned kSteps = aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices;
 constexpr int kUnusedComponents = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                   aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS;
@@ -84,10 +87,27 @@ Material materialFrom(const aiMaterial& source, unsigned number) {
   return material;
 }
 
+bool isPolygon(const aiFace& face) {
+  return face.mNumIndices >= 3;
+}
+
+std::span<const aiFace> facesOf(const aiMesh& mesh) {
+  return {mesh.mFaces, mesh.mNumFaces};
+}
+
+std::uint64_t trianglesOf(const aiMesh& mesh) {
+  std::uint64_t triangles = 0;
+  for (const aiFace& face : facesOf(mesh)) {
+    triangles += isPolygon(face) ? face.mNumIndices - 2 : 0;
+  }
+  return triangles;
+}
+
 class AssimpConverter {
  public:
-  AssimpConverter(const aiScene& source, const std::string& name, const ImportLimits& limits)
-      : source_(source), name_(name), limits_(limits), builder_(limits) {}
+  AssimpConverter(const aiScene& source, const std::string& name, const ImportLimits& limits,
+                  AssimpFindings& findings)
+      : source_(source), name_(name), limits_(limits), findings_(findings), builder_(limits) {}
 
   Result<Scene> convert() {
     std::vector<bool> see_through(source_.mNumMaterials, false);
@@ -107,11 +127,8 @@ class AssimpConverter {
       const Open at = open.back();
       open.pop_back();
       const Mat4 world_from_node = at.world_from_parent * matrixFrom(at.node->mTransformation);
-      for (unsigned i = 0; i < at.node->mNumMeshes; ++i) {
-        const Status status = addMesh(*at.node, i, world_from_node);
-        if (!status) {
-          return status.error();
-        }
+      if (const Status status = addMeshes(*at.node, world_from_node); !status) {
+        return status.error();
       }
       for (unsigned i = at.node->mNumChildren; i-- > 0;) {
         open.push_back({at.node->mChildren[i], world_from_node});
@@ -126,79 +143,105 @@ class AssimpConverter {
     Mat4 world_from_parent;
   };
 
-  Status addMesh(const aiNode& node, unsigned slot, const Mat4& world_from_node) {
-    const unsigned number = node.mMeshes[slot];
-    if (number >= source_.mNumMeshes) {
-      return failure("{}: node \"{}\": mesh {} does not exist (the file has {})", name_, node.mName.C_Str(),
-                     number, source_.mNumMeshes);
+  // One object for each mesh that has triangles.
+  Status addMeshes(const aiNode& node, const Mat4& world_from_node) {
+    std::vector<unsigned> numbers;
+    for (const unsigned number : std::span(node.mMeshes, node.mNumMeshes)) {
+      if (number >= source_.mNumMeshes) {
+        return failure("{}: node \"{}\": mesh {} does not exist (the file has {})", name_, node.mName.C_Str(),
+                       number, source_.mNumMeshes);
+      }
+      const std::span<const aiFace> faces = facesOf(*source_.mMeshes[number]);
+      if (std::any_of(faces.begin(), faces.end(), isPolygon)) {
+        numbers.push_back(number);
+      }
     }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const aiMesh& mesh = *source_.mMeshes[numbers[i]];
+      std::string object_name = node.mName.length > 0 ? node.mName.C_Str() : mesh.mName.C_Str();
+      if (numbers.size() > 1) {
+        object_name += fmt::format("/primitive{}", i);
+      }
+      const Status status = addMesh(std::move(object_name), numbers[i], world_from_node);
+      if (!status) {
+        return status;
+      }
+    }
+    return Success{};
+  }
+
+  Status addMesh(std::string object_name, unsigned number, const Mat4& world_from_node) {
     const aiMesh& mesh = *source_.mMeshes[number];
-    const std::span<const aiFace> faces(mesh.mFaces, mesh.mNumFaces);
-    if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 ||
-        std::none_of(faces.begin(), faces.end(), [](const aiFace& face) { return face.mNumIndices == 3; })) {
-      return Success{};
-    }
     if (mesh.mMaterialIndex >= source_.mNumMaterials) {
       return failure("{}: mesh {}: material {} does not exist (the file has {})", name_, number,
                      mesh.mMaterialIndex, source_.mNumMaterials);
     }
     if (++objects_ > limits_.objects) {
-      return failure("{}: node \"{}\": the scene exceeds {} objects", name_, node.mName.C_Str(),
-                     limits_.objects);
+      return failure("{}: object \"{}\": the scene exceeds {} objects", name_, object_name, limits_.objects);
     }
-    if (!builder_.fits(mesh.mNumFaces)) {
+    if (const std::uint64_t triangles = trianglesOf(mesh); !builder_.fits(triangles)) {
       return failure("{}: mesh {}: with its {} triangles the scene exceeds {} triangles", name_, number,
-                     mesh.mNumFaces, limits_.triangles);
-    }
-    std::string object_name = node.mName.length > 0 ? node.mName.C_Str() : mesh.mName.C_Str();
-    if (node.mNumMeshes > 1) {
-      object_name += fmt::format("/primitive{}", slot);
+                     triangles, limits_.triangles);
     }
     builder_.beginObject(std::move(object_name), MaterialId(mesh.mMaterialIndex), OccluderMark::kAutomatic);
-    return addFaces(mesh, number, world_from_node);
-  }
-
-  Status addFaces(const aiMesh& mesh, unsigned number, const Mat4& world_from_node) {
-    constexpr std::uint32_t kNone = 0xffffffffu;
+    vertex_of_.assign(mesh.mNumVertices, kNone);
     const bool mirrored = determinant3(world_from_node) < 0.0;
-    std::vector<std::uint32_t> vertex_of(mesh.mNumVertices, kNone);
     for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
-      if (mesh.mFaces[face].mNumIndices != 3) {
-        continue;
-      }
-      std::array<std::uint32_t, 3> corners;
-      for (unsigned i = 0; i < 3; ++i) {
-        const unsigned index = mesh.mFaces[face].mIndices[i];
-        if (index >= mesh.mNumVertices) {
-          return failure("{}: mesh {}: index {} of face {} is out of range ({} vertices)", name_, number,
-                         index, face, mesh.mNumVertices);
+      if (isPolygon(mesh.mFaces[face])) {
+        const Status status = addFace(mesh, number, face, world_from_node, mirrored);
+        if (!status) {
+          return status;
         }
-        if (vertex_of[index] == kNone) {
-          const aiVector3D& p = mesh.mVertices[index];
-          const Vec3d point_world =
-              transformPoint(world_from_node,
-                             {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
-          if (!SceneBuilder::inRange(point_world)) {
-            return failure("{}: mesh {}: vertex {} is not finite or exceeds single precision", name_, number,
-                           index);
-          }
-          vertex_of[index] = builder_.addVertex(point_world);
-        }
-        corners[i] = vertex_of[index];
       }
-      if (mirrored) {
-        std::swap(corners[1], corners[2]);
-      }
-      builder_.addTriangle(corners[0], corners[1], corners[2]);
     }
     return Success{};
   }
 
+  // Cuts the face as it is in the file: there, corners of one plane are still in one.
+  Status addFace(const aiMesh& mesh, unsigned number, unsigned face, const Mat4& world_from_node,
+                 bool mirrored) {
+    corners_.clear();
+    vertices_.clear();
+    for (const unsigned index : std::span(mesh.mFaces[face].mIndices, mesh.mFaces[face].mNumIndices)) {
+      if (index >= mesh.mNumVertices) {
+        return failure("{}: mesh {}: index {} of face {} is out of range ({} vertices)", name_, number, index,
+                       face, mesh.mNumVertices);
+      }
+      const aiVector3D& p = mesh.mVertices[index];
+      corners_.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+      if (vertex_of_[index] == kNone) {
+        const Vec3d point_world = transformPoint(world_from_node, corners_.back());
+        if (!isFinite(corners_.back()) || !SceneBuilder::inRange(point_world)) {
+          return failure("{}: mesh {}: vertex {} is not finite or exceeds single precision", name_, number,
+                         index);
+        }
+        vertex_of_[index] = builder_.addVertex(point_world);
+      }
+      vertices_.push_back(vertex_of_[index]);
+    }
+    const PolygonTriangles cut = triangulator_.triangulate(corners_);
+    if (!cut.exact) {
+      builder_.setMark(OccluderMark::kNever);
+      ++findings_.inexact_polygons;
+    }
+    for (const auto& [a, b, c] : cut.triangles) {
+      builder_.addTriangle(vertices_[a], vertices_[mirrored ? c : b], vertices_[mirrored ? b : c]);
+    }
+    return Success{};
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
   const aiScene& source_;
   const std::string& name_;
   const ImportLimits& limits_;
+  AssimpFindings& findings_;
   SceneBuilder builder_;
+  PolygonTriangulator triangulator_;
   std::uint64_t objects_ = 0;
+  std::vector<std::uint32_t> vertex_of_;  // the builder's, for those of the mesh; kNone: not yet added
+  std::vector<Vec3d> corners_;            // of a face
+  std::vector<std::uint32_t> vertices_;   // of it, the builder's
 };
 
 }  // namespace
@@ -207,13 +250,12 @@ bool isAssimpExtension(const std::string& extension) {
   return Assimp::Importer().IsExtensionSupported(extension);
 }
 
-Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) {
+Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits, AssimpFindings& findings) {
   // Assimp throws when memory runs out; nothing leaves here.
   try {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                                 kUnusedComponents | (coloursCount(file) ? 0 : int{aiComponent_COLORS}));
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* const source = importer.ReadFile(file, kSteps);
     if (source == nullptr || source->mRootNode == nullptr ||
         (source->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
@@ -225,7 +267,7 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
       return failure("{}: could not be read: {}", file,
                      reason.empty() ? "it holds no complete scene" : reason);
     }
-    return AssimpConverter(*source, file, limits).convert();
+    return AssimpConverter(*source, file, limits, findings).convert();
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& exception) {
@@ -234,31 +276,37 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
 }
 
 Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_bytes,
-                                  const ImportLimits& limits, std::uint32_t most_seconds) {
+                                  const ImportLimits& limits, AssimpFindings& findings,
+                                  std::uint32_t most_seconds) {
   const std::uint64_t seconds = kReaderSeconds + file_bytes / kReaderBytesInSecond;
   const ChildLimits own{
       .memory_bytes = kReaderBytes + kReaderBytesEach * file_bytes,
       .seconds = static_cast<std::uint32_t>(std::min<std::uint64_t>(seconds, most_seconds))};
-  // The first byte tells a scene from an error's text.
+  // The first byte tells a scene from an error's text. Before the scene stand the findings.
   const Result<std::vector<std::byte>> answer = runInChild(own, [&] {
-    const Result<Scene> scene = importAssimp(file, limits);
-    std::vector<std::byte> bytes{std::byte{scene ? kSceneFollows : kErrorFollows}};
-    const auto append = [&bytes](std::span<const std::byte> more) {
-      bytes.insert(bytes.end(), more.begin(), more.end());
-    };
-    append(scene ? std::span<const std::byte>(sceneBytes(*scene))
-                 : std::as_bytes(std::span(scene.error().message)));
-    return bytes;
+    AssimpFindings found;
+    const Result<Scene> scene = importAssimp(file, limits, found);
+    base::ByteWriter writer;
+    writer.add(scene ? kSceneFollows : kErrorFollows);
+    if (scene) {
+      writer.add(found.inexact_polygons);
+      writer.addBytes(sceneBytes(*scene));
+    } else {
+      writer.addBytes(std::as_bytes(std::span(scene.error().message)));
+    }
+    return writer.take();
   });
   if (!answer || answer->empty()) {
     return failure("{}: could not be read: {}", file,
                    answer ? "its reader gave no answer" : answer.error().message);
   }
-  const std::span<const std::byte> rest = std::span(*answer).subspan(1);
-  if (answer->front() == std::byte{kErrorFollows}) {
-    return failure("{}", std::string_view(reinterpret_cast<const char*>(rest.data()), rest.size()));
+  base::ByteReader reader(*answer);
+  if (reader.read<unsigned char>() == kErrorFollows) {
+    const std::span<const std::byte> text = reader.readBytes(reader.remaining());
+    return failure("{}", std::string_view(reinterpret_cast<const char*>(text.data()), text.size()));
   }
-  std::optional<Scene> scene = sceneFromBytes(rest);
+  findings.inexact_polygons = reader.read<std::uint64_t>();
+  std::optional<Scene> scene = sceneFromBytes(reader.readBytes(reader.remaining()));
   return scene ? Result<Scene>(std::move(*scene))
                : failure("{}: could not be read: its reader gave a broken answer", file);
 }

@@ -13,7 +13,21 @@ namespace sightline {
 
 using namespace io;
 
-Result<Scene> importScene(const std::string& file) {
+namespace {
+
+void noteInexact(const std::string& file, std::uint64_t polygons, std::vector<std::string>* notes) {
+  if (polygons > 0 && notes != nullptr) {
+    notes->push_back(fmt::format(
+        "{}: {} {} or {} too many corners, so the objects that have {} hide nothing; give triangles "
+        "instead",
+        oneLine(file), polygons, polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
+        polygons == 1 ? "has" : "have", polygons == 1 ? "it" : "them"));
+  }
+}
+
+}  // namespace
+
+Result<Scene> importScene(const std::string& file, std::vector<std::string>* notes) {
   const std::filesystem::path path(file);
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -47,7 +61,9 @@ Result<Scene> importScene(const std::string& file) {
   const bool may_be_see_through = is_ply && plyFacesHaveAlpha(*bytes);
   const std::uint64_t file_bytes = bytes->size();
   std::string().swap(*bytes);  // frees it: Assimp reads the file itself, with the others that it names
-  Result<Scene> scene = importAssimpInChild(file, file_bytes, ImportLimits{});
+  AssimpFindings findings;
+  Result<Scene> scene = importAssimpInChild(file, file_bytes, ImportLimits{}, findings);
+  noteInexact(file, findings.inexact_polygons, notes);
   if (scene && may_be_see_through) {
     for (Material& material : scene->materials) {
       material.opacity = Opacity::kBlended;

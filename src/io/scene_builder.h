@@ -42,6 +42,8 @@ class SceneBuilder {
   }
 
   void beginObject(std::string name, MaterialId material, OccluderMark mark);
+  // Sets the mark of the object that was begun last.
+  void setMark(OccluderMark mark) { scene_.objects.back().mark = mark; }
   // Returns the vertex's number for addTriangle. Precondition: inRange(position).
   std::uint32_t addVertex(const Vec3d& position_world);
   void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);

@@ -258,19 +258,17 @@ TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
 TEST_F(Files, WhatExceedsTheLimitsIsRefused) {
   folder.write("a.mtl", kMtl);
   const std::string file = folder.write("a.obj", kObj);  // two objects of three triangles
-  EXPECT_TRUE(io::importAssimp(file, {.triangles = 3, .objects = 2}));
-  EXPECT_NE(io::importAssimp(file, {.triangles = 2}).error().message.find("exceeds 2 triangles"),
+  io::AssimpFindings findings;
+  EXPECT_TRUE(io::importAssimp(file, {.triangles = 3, .objects = 2}, findings));
+  EXPECT_NE(io::importAssimp(file, {.triangles = 2}, findings).error().message.find("exceeds 2 triangles"),
             std::string::npos);
-  EXPECT_NE(io::importAssimp(file, {.objects = 1}).error().message.find("exceeds 1 objects"),
+  EXPECT_NE(io::importAssimp(file, {.objects = 1}, findings).error().message.find("exceeds 1 objects"),
             std::string::npos);
 }
 
-// Assimp 5.2 aborts on this file, which must not be the end of the program that reads it.
+// It announces more than the process that reads it may take, which must not be the end of this one.
 TEST_F(Files, WhatBringsAssimpDownIsOneError) {
-  const std::string file = folder.write("a.off",
-                                        "OFF\n4 2 0\n0 0 0-11 0 0\n0 1 0\n0 0 1\x7f"
-                                        "3 0 1 2\x97"
-                                        "3 ");
+  const std::string file = folder.write("a.off", "OFF\n200000000 1 0\n0 0 0\n");
   const Result<Scene> scene = importScene(file);
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().message.find(file + ": could not be read: "), 0u) << scene.error().message;

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/scene/scene.h"
@@ -18,10 +19,17 @@ namespace sightline {
 // glTF node, mesh or material; the node's mark is stronger than the mesh's, and this than the material's. An
 // error names the file and the element, and nothing partial is returned.
 //
+// Polygons are cut into triangles of their own corners that cover just the polygon, and whoever draws a
+// polygon whose corners do not lie in one plane must draw these triangles. Objects with polygons that cross
+// or overlap themselves, or that have more than 16,384 corners, are marked as no occluders.
+//
+// notes: where it is given, lines about what the file leaves open are appended, each of which names the file
+// and what to do.
+//
 // Several threads may import at once, while others run. Assimp reads in a fork of this process, which has the
 // calling thread alone: locks that other threads hold at that moment stay locked there, and handlers of
 // pthread_atfork() run. A file that crashes or hangs Assimp is an error.
-Result<Scene> importScene(const std::string& file);
+Result<Scene> importScene(const std::string& file, std::vector<std::string>* notes = nullptr);
 
 // Reads a .glb, or the JSON text of a .gltf, from memory. Bytes of any origin are safe. Buffers in other
 // files are looked up under base_dir, and refused when it is empty.
