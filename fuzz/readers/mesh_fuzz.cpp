@@ -12,7 +12,7 @@ using namespace sightline::fuzz;
 
 namespace {
 
-constexpr std::array kFormats{".obj", ".ply", ".stl",  ".off", ".dae", ".fbx", ".3ds", ".x",
+constexpr std::array kFormats{".nff", ".ply", ".stl",  ".off", ".dae", ".fbx", ".3ds", ".x",
                               ".ac",  ".lwo", ".ms3d", ".md2", ".md3", ".smd", ".b3d", ".ase"};
 const io::ImportLimits kLimits{.triangles = 100'000, .objects = 10'000};
 

@@ -7,6 +7,7 @@
 #include "sightline/io/file.h"
 #include "src/io/assimp.h"
 #include "src/io/failure.h"
+#include "src/io/obj/obj.h"
 #include "src/io/ply_check.h"
 
 namespace sightline {
@@ -23,6 +24,33 @@ void noteInexact(const std::string& file, std::uint64_t polygons, std::vector<st
         oneLine(file), polygons, polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
         polygons == 1 ? "has" : "have", polygons == 1 ? "it" : "them"));
   }
+}
+
+// The first of several names, as in "a", "b" and 3 more.
+std::string named(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    const bool last = i + 1 == names.size();
+    text += fmt::format("{}\"{}\"", i == 0 ? "" : last ? " and " : ", ", names[i].substr(0, 60));
+  }
+  return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
+}
+
+void noteMissingMaterials(const std::string& file, const ObjFindings& findings,
+                          std::vector<std::string>* notes) {
+  if (findings.faces_without_material == 0 || notes == nullptr) {
+    return;
+  }
+  const bool one = findings.faces_without_material == 1;
+  const std::string what =
+      findings.missing_libraries.empty()
+          ? "name the .mtl file that defines them in a line mtllib, or define them"
+          : fmt::format("put {} beside the file, or define them", named(findings.missing_libraries));
+  notes->push_back(oneLine(
+      fmt::format("{}: {} {} a material that no .mtl file defines ({}); it may be glass, so {} nothing; {}",
+                  file, findings.faces_without_material, one ? "face has" : "faces have",
+                  named(findings.missing_materials), one ? "it hides" : "they hide", what)));
 }
 
 }  // namespace
@@ -44,6 +72,13 @@ Result<Scene> importScene(const std::string& file, std::vector<std::string>* not
   if (is_gltf) {
     const std::string folder = path.parent_path().string();
     return importGltf(*bytes, folder.empty() ? "." : folder, file);
+  }
+  if (extension == ".obj") {
+    ObjFindings findings;
+    Result<Scene> scene = importObj(*bytes, path.parent_path().string(), file, ImportLimits{}, findings);
+    noteInexact(file, findings.inexact_polygons, notes);
+    noteMissingMaterials(file, findings, notes);
+    return scene;
   }
   if (extension.empty() || !isAssimpExtension(extension)) {
     return failure(

@@ -9,7 +9,7 @@
 
 namespace sightline {
 
-// Reads a scene file: .glb and .gltf by our own checked reader, everything else through Assimp.
+// Reads a scene file: .glb, .gltf and .obj by our own checked readers, everything else through Assimp.
 //
 // Objects are numbered depth first over the default scene's roots: a node's primitives in order, then its
 // children in order. Primitives without triangles make no object. Positions are in world space, moved so that
@@ -22,6 +22,9 @@ namespace sightline {
 // Polygons are cut into triangles of their own corners that cover just the polygon, and whoever draws a
 // polygon whose corners do not lie in one plane must draw these triangles. Objects with polygons that cross
 // or overlap themselves, or that have more than 16,384 corners, are marked as no occluders.
+//
+// Objects of an .obj file are its o and g statements, divided where usemtl names another material. A material
+// that no .mtl file defines may be glass and counts as blended, which a note tells.
 //
 // notes: where it is given, lines about what the file leaves open are appended, each of which names the file
 // and what to do.
