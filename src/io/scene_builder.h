@@ -52,6 +52,8 @@ class SceneBuilder {
     return maxComponent(abs(position_world)) <= kLargestCoordinate && isFinite(position_world);
   }
 
+  void addNote(std::string note) { scene_.notes.push_back(std::move(note)); }
+
   // Path with far == 0: "as far as the scene reaches".
   void addPath(CameraPath path) { scene_.paths.push_back(std::move(path)); }
 

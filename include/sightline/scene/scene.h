@@ -68,6 +68,7 @@ struct Scene {
   std::vector<std::string> object_names{};  // one per object
   std::vector<CameraPath> paths{};          // of the file's cameras or of the procedural scene, world space
   Vec3d origin{};                           // position of the origin of scene space, world space
+  std::vector<std::string> notes{};         // what the importer has to say to the user, a line each
 
   SceneView view() const { return {positions, indices, objects, materials}; }
   std::uint64_t triangleCount() const { return indices.size() / 3; }

@@ -33,7 +33,7 @@ std::uint64_t componentSize(int component_type) {
   }
 }
 
-// 0: a type that nothing we read may have (matrices).
+// 0: a type that nothing we read may have (smaller matrices, whose columns may be padded).
 std::uint64_t componentCount(ElementType type) {
   switch (type) {
     case ElementType::kScalar:
@@ -44,6 +44,8 @@ std::uint64_t componentCount(ElementType type) {
       return 3;
     case ElementType::kVec4:
       return 4;
+    case ElementType::kMat4:
+      return 16;
     default:
       return 0;
   }

@@ -57,7 +57,8 @@ struct GltfFile {
   };
 
   struct Primitive {
-    int positions = -1;  // accessor of the attribute POSITION
+    int positions = -1;                // accessor of the attribute POSITION
+    std::vector<int> joints, weights;  // accessors of the attributes JOINTS_n and WEIGHTS_n, by n
     int indices = -1;
     int material = -1;
     int mode = PrimitiveMode::kTriangles;
@@ -72,6 +73,7 @@ struct GltfFile {
     std::string name;
     int camera = -1;
     int mesh = -1;
+    int skin = -1;
     std::vector<int> children;
     std::optional<std::array<double, 16>> matrix;
     NodePose pose;  // of a node without a matrix
@@ -79,6 +81,11 @@ struct GltfFile {
   };
   struct Scene {
     std::vector<int> nodes;
+  };
+
+  struct Skin {
+    std::vector<int> joints;         // nodes
+    int inverse_bind_matrices = -1;  // accessor; -1: all are the identity
   };
 
   struct Material {
@@ -124,6 +131,7 @@ struct GltfFile {
   std::vector<Scene> scenes;
   std::vector<Node> nodes;
   std::vector<Mesh> meshes;
+  std::vector<Skin> skins;
   std::vector<Accessor> accessors;
   std::vector<BufferView> buffer_views;
   std::vector<Material> materials;

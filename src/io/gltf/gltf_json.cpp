@@ -46,6 +46,12 @@ class Checker {
     }
     output = json::object();
     for (const Field& field : fields) {
+      if (field.kind == Kind::kSets) {
+        if (!sets(input, field, where, output[field.key])) {
+          return false;
+        }
+        continue;
+      }
       const auto found = input.find(field.key);
       if (found == input.end()) {
         if (field.required) {
@@ -80,8 +86,11 @@ class Checker {
       case Kind::kFlag:
         return keep(input.is_boolean(), input, field, "true or false", where, output);
       case Kind::kNumbers:
-        return keep(isArrayOf(input, &json::is_number) && input.size() == field.count, input, field,
-                    fmt::format("an array of {} numbers", field.count), where, output);
+        return keep(
+            isArrayOf(input, &json::is_number) && (field.count == 0 || input.size() == field.count), input,
+            field,
+            field.count == 0 ? "an array of numbers" : fmt::format("an array of {} numbers", field.count),
+            where, output);
       case Kind::kStride:
         return integer(input, field, 252, where, output) &&
                keep(output.get<int>() % 4 == 0, input, field, "a multiple of 4", where, output);
@@ -100,6 +109,8 @@ class Checker {
       }
       case Kind::kObjects:
         return objects(input, field, where, output);
+      case Kind::kSets:
+        break;  // has no key of its own: see object()
     }
     return false;
   }
@@ -146,6 +157,25 @@ class Checker {
       output.push_back(std::move(checked));
     }
     return true;
+  }
+
+  bool sets(const json& input, const Field& field, const Where& where, json& output) {
+    output = json::array();
+    for (std::size_t i = 0;; ++i) {
+      const std::string key = fmt::format("{}{}", field.key, i);
+      const auto found = input.find(key);
+      if (found == input.end()) {
+        return true;
+      }
+      if (i == kMostSets) {
+        return fail(where, "has more than {} sets {}n", kMostSets, field.key);
+      }
+      json checked;
+      if (!integer(*found, {.key = key.c_str(), .kind = Kind::kIndex}, kLargestIndex, where, checked)) {
+        return false;
+      }
+      output.push_back(std::move(checked));
+    }
   }
 
   // Extras belong to everybody: only a key "occluder" in an object is ours, and must then be understood.

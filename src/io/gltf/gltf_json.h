@@ -1,7 +1,7 @@
 #pragma once
 
 // The first steps of the glTF reader: container, JSON nesting, and the type and range of every value. What
-// Sightline does not use (images, textures, skins, extras, ...) is left behind here.
+// Sightline does not use (images, textures, most extensions and extras, ...) is left behind here.
 
 #include <cstdint>
 #include <optional>

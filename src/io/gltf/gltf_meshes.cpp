@@ -1,6 +1,8 @@
 #include <optional>
 
 #include "src/io/gltf/gltf_primitives.h"
+#include "src/io/gltf/gltf_skins.h"
+#include "src/io/gltf/gltf_vertices.h"
 
 namespace sightline::io {
 namespace {
@@ -8,7 +10,11 @@ namespace {
 class ObjectAdder {
  public:
   ObjectAdder(const Document& document, const NodeTree& tree, Accessors& accessors, SceneBuilder& builder)
-      : document_(document), tree_(tree), builder_(builder), meshes_(document, accessors) {}
+      : document_(document),
+        tree_(tree),
+        builder_(builder),
+        meshes_(document, accessors),
+        skins_(document, tree, accessors) {}
 
   // Instances multiply: their sum is known before the first is made.
   Status checkLimits() {
@@ -28,7 +34,7 @@ class ObjectAdder {
       const std::uint64_t count = (*mesh)->primitives.size();
       objects += count;
       triangles += (*mesh)->triangles;
-      vertices += (*mesh)->vertices;
+      vertices += (*mesh)->vertices + (document_.file.nodes[number].skin < 0 ? 0 : (*mesh)->joint_vertices);
       implied_vertices += (*mesh)->implied_vertices;
       name_bytes += count * (document_.file.nodes[number].name.size() + 24);
       if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
@@ -58,14 +64,32 @@ class ObjectAdder {
     if (*mesh == nullptr) {
       return Success{};
     }
+    const Result<Placement> placement = placementOf(node_number);
+    if (!placement) {
+      return placement.error();
+    }
     for (const PrimitiveSource& primitive : (*mesh)->primitives) {
+      if (!placement->joints.empty() && primitive.joints.empty()) {
+        return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,
+                       node_number, primitive.where);
+      }
       addObject(primitive, node_number);
-      const Status status = addTriangles(primitive, node_number);
+      const Status status = addTriangles(primitive, *placement);
       if (!status) {
         return status;
       }
     }
     return Success{};
+  }
+
+  void addNotes() {
+    if (moving_ > 0) {
+      builder_.addNote(fmt::format(
+          "objects that move, by animations, skins or morph targets: {}. They stand in their rest pose and "
+          "hide nothing. Cull them as moving objects where they are; to one that stays, give \"extras\": "
+          "{{\"occluder\": true}}",
+          moving_));
+    }
   }
 
  private:
@@ -80,6 +104,19 @@ class ObjectAdder {
                      mesh, document_.file.meshes.size());
     }
     return meshes_.open(static_cast<std::size_t>(mesh));
+  }
+
+  Result<Placement> placementOf(std::size_t node_number) {
+    Placement placement{.world_from_node = tree_.world_from_node[node_number], .node = node_number};
+    const int skin = document_.file.nodes[node_number].skin;
+    if (skin >= 0) {
+      const Result<const std::vector<Mat4>*> joints = skins_.open(skin, node_number);
+      if (!joints) {
+        return joints.error();
+      }
+      placement.joints = **joints;
+    }
+    return placement;
   }
 
   void addObject(const PrimitiveSource& primitive, std::size_t node_number) {
@@ -104,18 +141,25 @@ class ObjectAdder {
     return default_material_;
   }
 
-  // Node, then mesh, then material.
+  // Node, then mesh, then material. What moves and has no mark hides nothing: where it stands in the file, it
+  // stands only for a while.
   OccluderMark markFor(const GltfFile::Node& node, const GltfFile::Mesh& mesh,
-                       const PrimitiveSource& primitive) const {
+                       const PrimitiveSource& primitive) {
     std::optional<bool> occluder = node.occluder ? node.occluder : mesh.occluder;
     if (!occluder && primitive.material >= 0) {
       occluder = document_.file.materials[static_cast<std::size_t>(primitive.material)].occluder;
     }
+    if (!occluder && node.skin >= 0) {
+      ++moving_;
+      return OccluderMark::kNever;
+    }
     return !occluder ? OccluderMark::kAutomatic : *occluder ? OccluderMark::kOccluder : OccluderMark::kNever;
   }
 
-  Status addTriangles(const PrimitiveSource& source, std::size_t node_number) {
-    const bool mirrored = determinant3(tree_.world_from_node[node_number]) < 0.0;
+  Status addTriangles(const PrimitiveSource& source, const Placement& placement) {
+    // A mirroring node turns the order of corners over. The node of a skinned mesh does not place it, and no
+    // renderer looks at the determinants of joints: the order stays, also where joints mirror.
+    const bool mirrored = placement.joints.empty() && determinant3(placement.world_from_node) < 0.0;
     ++object_;
     if (slots_.size() < source.positions->count()) {
       slots_.resize(source.positions->count());
@@ -124,7 +168,7 @@ class ObjectAdder {
       std::array<std::uint32_t, 3> vertices;
       const std::array<std::uint64_t, 3> corners = source.cornersOf(triangle);
       for (std::size_t i = 0; i < 3; ++i) {
-        const Result<std::uint32_t> vertex = vertexAt(source, corners[i], node_number);
+        const Result<std::uint32_t> vertex = vertexAt(source, corners[i], placement);
         if (!vertex) {
           return vertex.error();
         }
@@ -138,10 +182,9 @@ class ObjectAdder {
     return Success{};
   }
 
-  // The builder's vertex for a corner; each vertex of an accessor is transformed once an object, and only if
-  // used.
+  // The builder's vertex for a corner; each vertex of an accessor is placed once an object, and only if used.
   Result<std::uint32_t> vertexAt(const PrimitiveSource& source, std::uint64_t corner,
-                                 std::size_t node_number) {
+                                 const Placement& placement) {
     const std::uint64_t index = source.indices == nullptr ? corner : source.indices->index(corner);
     if (index >= source.positions->count()) {
       return failure("{}: {}: index {} at position {} is out of range (accessor {} has {} vertices)",
@@ -152,18 +195,11 @@ class ObjectAdder {
     if (slot.object == object_) {
       return slot.vertex;
     }
-    const Vec3d point(source.positions->number(index, 0), source.positions->number(index, 1),
-                      source.positions->number(index, 2));
-    if (!isFinite(point)) {
-      return failure("{}: {}: vertex {} of accessor {} is not finite", document_.name, source.where, index,
-                     source.position_accessor);
+    const Result<Vec3d> point_world = placeVertex(document_, source, placement, index);
+    if (!point_world) {
+      return point_world.error();
     }
-    const Vec3d point_world = transformPoint(tree_.world_from_node[node_number], point);
-    if (!SceneBuilder::inRange(point_world)) {
-      return failure("{}: node {}: {}: the world position of vertex {} exceeds single precision",
-                     document_.name, node_number, source.where, index);
-    }
-    slot = {object_, builder_.addVertex(point_world)};
+    slot = {object_, builder_.addVertex(*point_world)};
     return slot.vertex;
   }
 
@@ -176,6 +212,8 @@ class ObjectAdder {
   const NodeTree& tree_;
   SceneBuilder& builder_;
   MeshSources meshes_;
+  Skins skins_;
+  std::uint64_t moving_ = 0;  // objects that hide nothing because they move
   MaterialId default_material_;
   std::vector<Slot> slots_;
   std::uint32_t object_ = 0;
@@ -196,6 +234,7 @@ Status addObjects(const Document& document, const NodeTree& tree, Accessors& acc
       return status;
     }
   }
+  adder.addNotes();
   return Success{};
 }
 

@@ -29,6 +29,7 @@ class AccessorView {
   std::uint64_t count() const { return count_; }
   int componentType() const { return component_type_; }
   ElementType type() const { return type_; }
+  bool normalized() const { return normalized_; }
   bool implied() const { return data_ == nullptr; }  // all is zero but for what a sparse accessor replaces
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
@@ -73,6 +74,7 @@ struct NodeTree {
   std::vector<Mat4> parent_from_node;
   std::vector<Mat4> world_from_node;
   std::vector<int> visited;  // nodes of the default scene, depth first
+  std::vector<bool> in_scene;
 };
 Result<NodeTree> buildNodeTree(const Document& document);
 

@@ -54,12 +54,13 @@ Status linkNodes(const Document& document, NodeTree& tree) {
 }
 
 // Depth first from a node without parent; each node is reached at most once because it has one parent.
-Status visitFrom(const Document& document, int root, NodeTree& tree, std::vector<int>& visited) {
+Status visitFrom(const Document& document, int root, NodeTree& tree) {
   std::vector<int> open{root};
   while (!open.empty()) {
     const auto node = static_cast<std::size_t>(open.back());
     open.pop_back();
-    visited.push_back(static_cast<int>(node));
+    tree.visited.push_back(static_cast<int>(node));
+    tree.in_scene[node] = true;
     const int parent = tree.parent[node];
     tree.world_from_node[node] =
         parent < 0 ? tree.parent_from_node[node]
@@ -180,12 +181,13 @@ Result<NodeTree> buildNodeTree(const Document& document) {
     tree.parent_from_node.push_back(*matrix);
   }
   tree.world_from_node.resize(count);
+  tree.in_scene.assign(count, false);
   const Result<std::vector<int>> roots = rootsOf(document, tree);
   if (!roots) {
     return roots.error();
   }
   for (const int root : *roots) {
-    status = visitFrom(document, root, tree, tree.visited);
+    status = visitFrom(document, root, tree);
     if (!status) {
       return status.error();
     }

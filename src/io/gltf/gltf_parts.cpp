@@ -92,7 +92,10 @@ GltfFile::Accessor accessor(const json& source) {
 
 GltfFile::Primitive primitive(const json& source) {
   GltfFile::Primitive primitive;
-  take(source["attributes"], "POSITION", primitive.positions);
+  const json& attributes = source["attributes"];
+  take(attributes, "POSITION", primitive.positions);
+  take(attributes, "JOINTS_", primitive.joints);
+  take(attributes, "WEIGHTS_", primitive.weights);
   take(source, "indices", primitive.indices);
   take(source, "material", primitive.material);
   take(source, "mode", primitive.mode);
@@ -112,6 +115,7 @@ GltfFile::Node node(const json& source) {
   take(source, "name", node.name);
   take(source, "camera", node.camera);
   take(source, "mesh", node.mesh);
+  take(source, "skin", node.skin);
   take(source, "children", node.children);
   if (source.contains("matrix")) {
     take(source, "matrix", node.matrix.emplace());
@@ -122,6 +126,13 @@ GltfFile::Node node(const json& source) {
   }
   node.occluder = occluderMark(source);
   return node;
+}
+
+GltfFile::Skin skin(const json& source) {
+  GltfFile::Skin skin;
+  take(source, "joints", skin.joints);
+  take(source, "inverseBindMatrices", skin.inverse_bind_matrices);
+  return skin;
 }
 
 GltfFile::Scene scene(const json& source) {
@@ -207,6 +218,7 @@ GltfFile partsOf(const json& document) {
   takeAll(document, "scenes", file.scenes, scene);
   takeAll(document, "nodes", file.nodes, node);
   takeAll(document, "meshes", file.meshes, mesh);
+  takeAll(document, "skins", file.skins, skin);
   takeAll(document, "accessors", file.accessors, accessor);
   takeAll(document, "bufferViews", file.buffer_views, bufferView);
   takeAll(document, "materials", file.materials, material);

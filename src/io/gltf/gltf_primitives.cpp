@@ -12,6 +12,19 @@ bool isIndexType(const AccessorView& view) {
           type == ComponentType::kUnsignedInt);
 }
 
+bool isJointType(const AccessorView& view) {
+  return view.type() == ElementType::kVec4 && !view.normalized() &&
+         (view.componentType() == ComponentType::kUnsignedByte ||
+          view.componentType() == ComponentType::kUnsignedShort);
+}
+
+// Integers that are not normalized count all the same: only the ratio of weights matters.
+bool isWeightType(const AccessorView& view) {
+  return view.type() == ElementType::kVec4 && (view.componentType() == ComponentType::kUnsignedByte ||
+                                               view.componentType() == ComponentType::kUnsignedShort ||
+                                               view.componentType() == ComponentType::kFloat);
+}
+
 bool isPositionType(const AccessorView& view) {
   return view.type() == ElementType::kVec3 && view.componentType() != ComponentType::kUnsignedInt;
 }
@@ -43,6 +56,7 @@ Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
     if (primitive->triangles > 0) {
       source.triangles += primitive->triangles;
       source.vertices += primitive->vertices;
+      source.joint_vertices += primitive->vertices * primitive->joints.size();
       source.implied_vertices += primitive->positions->implied() ? primitive->vertices : 0;
       source.primitives.push_back(std::move(*primitive));
     }
@@ -69,7 +83,10 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
     return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
                    source.material, materials);
   }
-  const Status status = openAccessors(primitive, source);
+  Status status = openAccessors(primitive, source);
+  if (status) {
+    status = openJoints(primitive, source);
+  }
   if (!status) {
     return status.error();
   }
@@ -109,6 +126,36 @@ Status MeshSources::openAccessors(const GltfFile::Primitive& primitive, Primitiv
                    document_.name, source.where, primitive.indices);
   }
   source.indices = *indices;
+  return Success{};
+}
+
+Status MeshSources::openJoints(const GltfFile::Primitive& primitive, PrimitiveSource& source) {
+  if (primitive.joints.size() != primitive.weights.size()) {
+    return failure("{}: {}: has {} sets JOINTS_n, but {} WEIGHTS_n", document_.name, source.where,
+                   primitive.joints.size(), primitive.weights.size());
+  }
+  for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+    const Result<const AccessorView*> joints = accessors_.view(primitive.joints[set], source.where);
+    if (!joints) {
+      return joints.error();
+    }
+    const Result<const AccessorView*> weights = accessors_.view(primitive.weights[set], source.where);
+    if (!weights) {
+      return weights.error();
+    }
+    if (!isJointType(**joints) || !isWeightType(**weights)) {
+      return failure(
+          "{}: {}: joints must be VEC4 of unsigned bytes or shorts, and weights VEC4 of floats or unsigned "
+          "bytes or shorts, but accessor {} or {} is not",
+          document_.name, source.where, primitive.joints[set], primitive.weights[set]);
+    }
+    if ((*joints)->count() != source.positions->count() || (*weights)->count() != source.positions->count()) {
+      return failure("{}: {}: {} joints and {} weights do not go with {} vertices", document_.name,
+                     source.where, (*joints)->count(), (*weights)->count(), source.positions->count());
+    }
+    source.joints.push_back(*joints);
+    source.weights.push_back(*weights);
+  }
   return Success{};
 }
 

@@ -17,7 +17,8 @@ struct PrimitiveSource {
   int mode = PrimitiveMode::kTriangles;
   int position_accessor = -1;
   const AccessorView* positions = nullptr;
-  const AccessorView* indices = nullptr;  // nullptr: vertices in order
+  const AccessorView* indices = nullptr;             // nullptr: vertices in order
+  std::vector<const AccessorView*> joints, weights;  // by set, as many of both
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;  // at most so many are used
 
@@ -29,6 +30,7 @@ struct MeshSource {
   std::vector<PrimitiveSource> primitives;  // those with triangles
   std::uint64_t triangles = 0, vertices = 0;
   std::uint64_t implied_vertices = 0;  // those of them without bytes in the file
+  std::uint64_t joint_vertices = 0;    // vertices, as often as sets of joints place them
 };
 
 // Opens each mesh once, however many nodes show it.
@@ -43,6 +45,7 @@ class MeshSources {
  private:
   Result<PrimitiveSource> openPrimitive(std::size_t mesh, std::size_t number);
   Status openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source);
+  Status openJoints(const GltfFile::Primitive& primitive, PrimitiveSource& source);
 
   const Document& document_;
   Accessors& accessors_;

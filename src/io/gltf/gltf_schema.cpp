@@ -20,12 +20,14 @@ constexpr Field kAsset[] = {{"version", kText, kRequired}, {"minVersion", kText}
 constexpr Field kScene[] = {{"nodes", kIndices}, {"name", kText}};
 
 constexpr Field kNode[] = {
-    {"name", kText},        {"camera", kIndex},     {"mesh", kIndex},
-    {"children", kIndices}, numbers("matrix", 16),  numbers("scale", 3),
-    {"extras", kMark},      numbers("rotation", 4), numbers("translation", 3),
+    {"name", kText},        {"camera", kIndex},        {"mesh", kIndex},    {"skin", kIndex},
+    {"children", kIndices}, numbers("matrix", 16),     numbers("scale", 3), {"extras", kMark},
+    numbers("rotation", 4), numbers("translation", 3),
 };
 
-constexpr Field kAttributes[] = {{"POSITION", kIndex}};
+constexpr Field kSkin[] = {{"joints", kIndices, kRequired}, {"inverseBindMatrices", kIndex}};
+
+constexpr Field kAttributes[] = {{"POSITION", kIndex}, {"JOINTS_", kSets}, {"WEIGHTS_", kSets}};
 constexpr Field kPrimitive[] = {
     {"attributes", kObject, kRequired, kAttributes},
     {"indices", kIndex},
@@ -101,6 +103,7 @@ constexpr Field kDocument[] = {
     {"scenes", kObjects, kOptional, kScene, "scene"},
     {"nodes", kObjects, kOptional, kNode, "node"},
     {"meshes", kObjects, kOptional, kMesh, "mesh"},
+    {"skins", kObjects, kOptional, kSkin, "skin"},
     {"accessors", kObjects, kOptional, kAccessor, "accessor"},
     {"bufferViews", kObjects, kOptional, kBufferView, "buffer view"},
     {"buffers", kObjects, kOptional, kBuffer, "buffer"},

@@ -12,8 +12,9 @@ enum class Kind : std::uint8_t {
   kIndex,    // integer in [0, 2^31)
   kSize,     // integer in [0, 2^53]
   kNumber,   // any finite number
-  kNumbers,  // array of finite numbers, Field::count of them
+  kNumbers,  // array of finite numbers, Field::count of them; any number of them if that is 0
   kIndices,  // array of kIndex
+  kSets,     // numbered keys "KEY0", "KEY1", ..., each a kIndex: handed on as an array under "KEY"
   kStride,   // 0 or a multiple of 4 up to 252
   kText,
   kElementType,  // "SCALAR", "VEC3", ...
@@ -35,6 +36,7 @@ struct Field {
 };
 
 inline constexpr std::size_t kFew = 65536;
+inline constexpr std::size_t kMostSets = 8;
 
 // Fields of the root object.
 std::span<const Field> documentSchema();

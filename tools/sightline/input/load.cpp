@@ -83,6 +83,11 @@ Result<Scene> loadScene(const std::string& name) {
   if (scene && scene->objects.empty()) {
     return Error{fmt::format("{}: there is nothing in it to draw; it has no triangles", name)};
   }
+  if (scene) {
+    for (const std::string& note : scene->notes) {
+      printNote("{}: {}", name, note);
+    }
+  }
   return scene;
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "src/io/gltf/gltf_primitives.h"
+
+namespace sightline::io {
+
+// Where one object's vertices are placed.
+struct Placement {
+  Mat4 world_from_node;
+  std::span<const Mat4> joints{};  // of its skin, as Skins::open() makes them; empty: it has none
+  std::size_t node = 0;            // its number, in errors
+};
+
+// The world position of a vertex. Precondition: index < positions->count().
+Result<Vec3d> placeVertex(const Document& document, const PrimitiveSource& source, const Placement& placement,
+                          std::uint64_t index);
+
+}  // namespace sightline::io
