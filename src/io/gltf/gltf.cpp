@@ -15,9 +15,9 @@ namespace {
 
 // Extensions that change nothing of what we read (they are about shading, light and metadata), or that we do
 // read.
-constexpr std::array<std::string_view, 5> kHonouredExtensions = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_texture_basisu",
-    "KHR_lights_punctual",   "KHR_xmp_json_ld",
+constexpr std::array<std::string_view, 6> kHonouredExtensions = {
+    "KHR_node_visibility", "KHR_mesh_quantization", "KHR_texture_transform",
+    "KHR_texture_basisu",  "KHR_lights_punctual",   "KHR_xmp_json_ld",
 };
 constexpr std::array<std::string_view, 2> kHonouredTextureFormats = {"EXT_texture_webp", "MSFT_texture_dds"};
 
@@ -107,6 +107,7 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
   }
   document.buffers = std::move(*buffers);
   document.file = std::move(checked->file);
+  document.moving = movingParts(document.file);
   Status status = checkParts(document);
   if (status) {
     status = checkSparseWork(document);

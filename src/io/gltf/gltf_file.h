@@ -61,11 +61,13 @@ struct GltfFile {
     std::vector<int> joints, weights;  // accessors of the attributes JOINTS_n and WEIGHTS_n, by n
     int indices = -1;
     int material = -1;
+    std::vector<int> targets;  // accessors of how the morph targets displace POSITION; -1: not at all
     int mode = PrimitiveMode::kTriangles;
   };
   struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<double> weights;   // of the morph targets
     std::optional<bool> occluder;  // extras
   };
 
@@ -76,7 +78,10 @@ struct GltfFile {
     int skin = -1;
     std::vector<int> children;
     std::optional<std::array<double, 16>> matrix;
-    NodePose pose;  // of a node without a matrix
+    NodePose pose;                               // of a node without a matrix
+    std::optional<std::vector<double>> weights;  // instead of the mesh's
+    bool visible = true;                         // KHR_node_visibility
+    bool exchanged = false;  // an extension lets it move, or shows others in its place at times
     std::optional<bool> occluder;
   };
   struct Scene {
@@ -115,15 +120,16 @@ struct GltfFile {
 
   struct Channel {
     int sampler = -1;
-    int node = -1;
+    int node = -1;  // -1: what the pointer names, or something of an extension
     std::string path;
+    std::string pointer;  // KHR_animation_pointer
   };
   struct Sampler {
     int input = -1, output = -1;
     std::string interpolation = "LINEAR";
   };
   struct Animation {
-    std::vector<Channel> channels;  // without those that move no node
+    std::vector<Channel> channels;
     std::vector<Sampler> samplers;
   };
 

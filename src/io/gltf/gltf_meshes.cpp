@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 
 #include "src/io/gltf/gltf_primitives.h"
@@ -19,6 +20,11 @@ class ObjectAdder {
   // Instances multiply: their sum is known before the first is made.
   Status checkLimits() {
     const ImportLimits& limits = document_.limits;
+    // Far beyond every limit; a sum of two does not overflow.
+    constexpr std::uint64_t kMany = std::uint64_t{1} << 62;
+    const auto times = [](std::uint64_t a, std::uint64_t b) {
+      return b > 0 && a > kMany / b ? kMany : a * b;
+    };
     std::uint64_t objects = 0;
     std::uint64_t triangles = 0, vertices = 0, implied_vertices = 0;
     std::uint64_t name_bytes = 0;
@@ -34,7 +40,11 @@ class ObjectAdder {
       const std::uint64_t count = (*mesh)->primitives.size();
       objects += count;
       triangles += (*mesh)->triangles;
-      vertices += (*mesh)->vertices + (document_.file.nodes[number].skin < 0 ? 0 : (*mesh)->joint_vertices);
+      const GltfFile::Node& source = document_.file.nodes[number];
+      const std::uint64_t targets =
+          source.weights ? activeTargets(*source.weights).size() : (*mesh)->active_targets.size();
+      vertices += times((*mesh)->vertices, 1 + targets);
+      vertices = std::min(vertices, kMany) + (source.skin < 0 ? 0 : (*mesh)->joint_vertices);
       implied_vertices += (*mesh)->implied_vertices;
       name_bytes += count * (document_.file.nodes[number].name.size() + 24);
       if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
@@ -64,16 +74,20 @@ class ObjectAdder {
     if (*mesh == nullptr) {
       return Success{};
     }
-    const Result<Placement> placement = placementOf(node_number);
+    Result<Placement> placement = placementOf(node_number);
     if (!placement) {
       return placement.error();
     }
+    const GltfFile::Node& node = document_.file.nodes[node_number];
+    const std::vector<ActiveTarget> own_targets =
+        node.weights ? activeTargets(*node.weights) : std::vector<ActiveTarget>();
+    placement->targets = node.weights ? own_targets : (*mesh)->active_targets;
     for (const PrimitiveSource& primitive : (*mesh)->primitives) {
       if (!placement->joints.empty() && primitive.joints.empty()) {
         return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,
                        node_number, primitive.where);
       }
-      addObject(primitive, node_number);
+      addObject(primitive, *placement);
       const Status status = addTriangles(primitive, *placement);
       if (!status) {
         return status;
@@ -93,10 +107,12 @@ class ObjectAdder {
   }
 
  private:
-  // nullptr: the node has none.
+  // nullptr: the node has none, or the file hides it. A hidden object would not be drawn, but whoever judges
+  // exactly what is seen would let it cover others, so it is left out. If an animation shows it at times, it
+  // stays, and hides nothing.
   Result<const MeshSource*> meshOf(std::size_t node_number) {
     const int mesh = document_.file.nodes[node_number].mesh;
-    if (mesh < 0) {
+    if (mesh < 0 || tree_.hidden[node_number]) {
       return static_cast<const MeshSource*>(nullptr);
     }
     if (!isIndexInto(mesh, document_.file.meshes.size())) {
@@ -119,14 +135,15 @@ class ObjectAdder {
     return placement;
   }
 
-  void addObject(const PrimitiveSource& primitive, std::size_t node_number) {
+  void addObject(const PrimitiveSource& primitive, const Placement& placement) {
+    const std::size_t node_number = placement.node;
     const GltfFile::Node& node = document_.file.nodes[node_number];
     const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::string name = node.name.empty() ? fmt::format("node{}", node_number) : node.name;
     if (mesh.primitives.size() > 1) {
       name += fmt::format("/primitive{}", primitive.number);
     }
-    builder_.beginObject(std::move(name), materialOf(primitive), markFor(node, mesh, primitive));
+    builder_.beginObject(std::move(name), materialOf(primitive), markFor(primitive, placement));
   }
 
   MaterialId materialOf(const PrimitiveSource& primitive) {
@@ -143,17 +160,25 @@ class ObjectAdder {
 
   // Node, then mesh, then material. What moves and has no mark hides nothing: where it stands in the file, it
   // stands only for a while.
-  OccluderMark markFor(const GltfFile::Node& node, const GltfFile::Mesh& mesh,
-                       const PrimitiveSource& primitive) {
+  OccluderMark markFor(const PrimitiveSource& primitive, const Placement& placement) {
+    const GltfFile::Node& node = document_.file.nodes[placement.node];
+    const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::optional<bool> occluder = node.occluder ? node.occluder : mesh.occluder;
     if (!occluder && primitive.material >= 0) {
       occluder = document_.file.materials[static_cast<std::size_t>(primitive.material)].occluder;
     }
-    if (!occluder && node.skin >= 0) {
+    if (!occluder && moves(primitive, placement)) {
       ++moving_;
       return OccluderMark::kNever;
     }
     return !occluder ? OccluderMark::kAutomatic : *occluder ? OccluderMark::kOccluder : OccluderMark::kNever;
+  }
+
+  bool moves(const PrimitiveSource& primitive, const Placement& placement) const {
+    const GltfFile::Node& node = document_.file.nodes[placement.node];
+    const bool shape_moves = !placement.targets.empty() || document_.moving.node_shapes[placement.node] ||
+                             document_.moving.mesh_shapes[static_cast<std::size_t>(node.mesh)];
+    return tree_.moves[placement.node] || node.skin >= 0 || (shape_moves && !primitive.targets.empty());
   }
 
   Status addTriangles(const PrimitiveSource& source, const Placement& placement) {

@@ -16,10 +16,20 @@
 
 namespace sightline::io {
 
+// What animations and extensions change as time goes on: a flag for each part of the file.
+struct Moving {
+  std::vector<bool> nodes;                     // it moves, or is shown only at times, with all below it
+  std::vector<bool> visibility;                // of nodes: an animation shows and hides it
+  std::vector<bool> node_shapes, mesh_shapes;  // the weights of morph targets
+  std::vector<bool> materials;                 // lets light through at times
+};
+Moving movingParts(const GltfFile& file);
+
 struct Document {
   std::string name;  // of the file, in errors
   ImportLimits limits;
   GltfFile file;
+  Moving moving;
   Buffers buffers;
 };
 
@@ -75,6 +85,8 @@ struct NodeTree {
   std::vector<Mat4> world_from_node;
   std::vector<int> visited;  // nodes of the default scene, depth first
   std::vector<bool> in_scene;
+  std::vector<bool> moves;   // it or a node above it does: see Moving
+  std::vector<bool> hidden;  // it or a node above it is, at all times
 };
 Result<NodeTree> buildNodeTree(const Document& document);
 

@@ -62,6 +62,10 @@ Status visitFrom(const Document& document, int root, NodeTree& tree) {
     tree.visited.push_back(static_cast<int>(node));
     tree.in_scene[node] = true;
     const int parent = tree.parent[node];
+    const bool below = parent >= 0;
+    tree.moves[node] = document.moving.nodes[node] || (below && tree.moves[static_cast<std::size_t>(parent)]);
+    tree.hidden[node] = (!document.file.nodes[node].visible && !document.moving.visibility[node]) ||
+                        (below && tree.hidden[static_cast<std::size_t>(parent)]);
     tree.world_from_node[node] =
         parent < 0 ? tree.parent_from_node[node]
                    : tree.world_from_node[static_cast<std::size_t>(parent)] * tree.parent_from_node[node];
@@ -181,7 +185,9 @@ Result<NodeTree> buildNodeTree(const Document& document) {
     tree.parent_from_node.push_back(*matrix);
   }
   tree.world_from_node.resize(count);
-  tree.in_scene.assign(count, false);
+  tree.in_scene.resize(count);
+  tree.moves.resize(count);
+  tree.hidden.resize(count);
   const Result<std::vector<int>> roots = rootsOf(document, tree);
   if (!roots) {
     return roots.error();

@@ -90,6 +90,12 @@ GltfFile::Accessor accessor(const json& source) {
   return accessor;
 }
 
+int morphTarget(const json& source) {
+  int positions = -1;
+  take(source, "POSITION", positions);
+  return positions;
+}
+
 GltfFile::Primitive primitive(const json& source) {
   GltfFile::Primitive primitive;
   const json& attributes = source["attributes"];
@@ -99,6 +105,7 @@ GltfFile::Primitive primitive(const json& source) {
   take(source, "indices", primitive.indices);
   take(source, "material", primitive.material);
   take(source, "mode", primitive.mode);
+  takeAll(source, "targets", primitive.targets, morphTarget);
   return primitive;
 }
 
@@ -106,8 +113,18 @@ GltfFile::Mesh mesh(const json& source) {
   GltfFile::Mesh mesh;
   take(source, "name", mesh.name);
   takeAll(source, "primitives", mesh.primitives, primitive);
+  take(source, "weights", mesh.weights);
   mesh.occluder = occluderMark(source);
   return mesh;
+}
+
+void takeExtensions(const json& extensions, GltfFile::Node& node) {
+  if (extensions.contains("KHR_node_visibility")) {
+    take(extensions["KHR_node_visibility"], "visible", node.visible);
+  }
+  node.exchanged = extensions.contains("MSFT_lod") || extensions.contains("AGI_articulations") ||
+                   (extensions.contains("KHR_physics_rigid_bodies") &&
+                    extensions["KHR_physics_rigid_bodies"].contains("motion"));
 }
 
 GltfFile::Node node(const json& source) {
@@ -123,6 +140,12 @@ GltfFile::Node node(const json& source) {
     take(source, "translation", node.pose.translation);
     take(source, "rotation", node.pose.rotation);
     take(source, "scale", node.pose.scale);
+  }
+  if (source.contains("weights")) {
+    take(source, "weights", node.weights.emplace());
+  }
+  if (source.contains("extensions")) {
+    takeExtensions(source["extensions"], node);
   }
   node.occluder = occluderMark(source);
   return node;
@@ -190,8 +213,12 @@ GltfFile::Camera camera(const json& source) {
 GltfFile::Channel channel(const json& source) {
   GltfFile::Channel channel;
   take(source, "sampler", channel.sampler);
-  take(source["target"], "node", channel.node);
-  take(source["target"], "path", channel.path);
+  const json& target = source["target"];
+  take(target, "node", channel.node);
+  take(target, "path", channel.path);
+  if (target.contains("extensions") && target["extensions"].contains("KHR_animation_pointer")) {
+    take(target["extensions"]["KHR_animation_pointer"], "pointer", channel.pointer);
+  }
   return channel;
 }
 

@@ -42,6 +42,16 @@ std::array<std::uint64_t, 3> PrimitiveSource::cornersOf(std::uint64_t triangle) 
   }
 }
 
+std::vector<ActiveTarget> activeTargets(std::span<const double> weights) {
+  std::vector<ActiveTarget> targets;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] != 0.0) {
+      targets.push_back({i, weights[i]});
+    }
+  }
+  return targets;
+}
+
 Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
   std::optional<MeshSource>& cached = meshes_[mesh];
   if (cached) {
@@ -61,6 +71,7 @@ Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
       source.primitives.push_back(std::move(*primitive));
     }
   }
+  source.active_targets = activeTargets(document_.file.meshes[mesh].weights);
   cached = std::move(source);
   return &*cached;
 }
@@ -84,6 +95,9 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
                    source.material, materials);
   }
   Status status = openAccessors(primitive, source);
+  if (status) {
+    status = openTargets(primitive, source);
+  }
   if (status) {
     status = openJoints(primitive, source);
   }
@@ -126,6 +140,28 @@ Status MeshSources::openAccessors(const GltfFile::Primitive& primitive, Primitiv
                    document_.name, source.where, primitive.indices);
   }
   source.indices = *indices;
+  return Success{};
+}
+
+Status MeshSources::openTargets(const GltfFile::Primitive& primitive, PrimitiveSource& source) {
+  for (const int target : primitive.targets) {
+    if (target < 0) {
+      source.targets.push_back(nullptr);
+      continue;
+    }
+    const Result<const AccessorView*> view = accessors_.view(target, source.where);
+    if (!view) {
+      return view.error();
+    }
+    if (!isPositionType(**view) || (*view)->count() != source.positions->count()) {
+      return failure(
+          "{}: {}: morph target {} must displace each of {} vertices, by VEC3 of floats, bytes or shorts, "
+          "but "
+          "accessor {} does not",
+          document_.name, source.where, source.targets.size(), source.positions->count(), target);
+    }
+    source.targets.push_back(*view);
+  }
   return Success{};
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct PrimitiveSource {
   int position_accessor = -1;
   const AccessorView* positions = nullptr;
   const AccessorView* indices = nullptr;             // nullptr: vertices in order
+  std::vector<const AccessorView*> targets;          // displacements of positions; nullptr: none
   std::vector<const AccessorView*> joints, weights;  // by set, as many of both
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;  // at most so many are used
@@ -26,11 +28,19 @@ struct PrimitiveSource {
   std::array<std::uint64_t, 3> cornersOf(std::uint64_t triangle) const;
 };
 
+// A morph target whose weight is not 0.
+struct ActiveTarget {
+  std::size_t number = 0;
+  double weight = 0.0;
+};
+std::vector<ActiveTarget> activeTargets(std::span<const double> weights);
+
 struct MeshSource {
   std::vector<PrimitiveSource> primitives;  // those with triangles
   std::uint64_t triangles = 0, vertices = 0;
-  std::uint64_t implied_vertices = 0;  // those of them without bytes in the file
-  std::uint64_t joint_vertices = 0;    // vertices, as often as sets of joints place them
+  std::uint64_t implied_vertices = 0;        // those of them without bytes in the file
+  std::uint64_t joint_vertices = 0;          // vertices, as often as sets of joints place them
+  std::vector<ActiveTarget> active_targets;  // by the mesh's own weights
 };
 
 // Opens each mesh once, however many nodes show it.
@@ -45,6 +55,7 @@ class MeshSources {
  private:
   Result<PrimitiveSource> openPrimitive(std::size_t mesh, std::size_t number);
   Status openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source);
+  Status openTargets(const GltfFile::Primitive& primitive, PrimitiveSource& source);
   Status openJoints(const GltfFile::Primitive& primitive, PrimitiveSource& source);
 
   const Document& document_;

@@ -19,23 +19,39 @@ constexpr Field kAsset[] = {{"version", kText, kRequired}, {"minVersion", kText}
 
 constexpr Field kScene[] = {{"nodes", kIndices}, {"name", kText}};
 
+// An object whose presence is all that counts.
+constexpr std::span<const Field> kAny{};
+
+constexpr Field kVisibility[] = {{"visible", kFlag}};
+constexpr Field kPhysics[] = {{"motion", kObject, kOptional, kAny}};
+constexpr Field kNodeExtensions[] = {
+    {"KHR_node_visibility", kObject, kOptional, kVisibility},
+    {"KHR_physics_rigid_bodies", kObject, kOptional, kPhysics},
+    {"MSFT_lod", kObject, kOptional, kAny},
+    {"AGI_articulations", kObject, kOptional, kAny},
+};
 constexpr Field kNode[] = {
-    {"name", kText},        {"camera", kIndex},        {"mesh", kIndex},    {"skin", kIndex},
-    {"children", kIndices}, numbers("matrix", 16),     numbers("scale", 3), {"extras", kMark},
-    numbers("rotation", 4), numbers("translation", 3),
+    {"name", kText},        {"camera", kIndex},     {"mesh", kIndex},
+    {"skin", kIndex},       numbers("weights", 0),  {"extensions", kObject, kOptional, kNodeExtensions},
+    {"children", kIndices}, numbers("matrix", 16),  numbers("scale", 3),
+    {"extras", kMark},      numbers("rotation", 4), numbers("translation", 3),
 };
 
 constexpr Field kSkin[] = {{"joints", kIndices, kRequired}, {"inverseBindMatrices", kIndex}};
 
 constexpr Field kAttributes[] = {{"POSITION", kIndex}, {"JOINTS_", kSets}, {"WEIGHTS_", kSets}};
+constexpr Field kMorphTarget[] = {{"POSITION", kIndex}};
 constexpr Field kPrimitive[] = {
     {"attributes", kObject, kRequired, kAttributes},
     {"indices", kIndex},
     {"material", kIndex},
     {"mode", kIndex},
+    {"targets", kObjects, kOptional, kMorphTarget, "target"},
 };
-constexpr Field kMesh[] = {
-    {"name", kText}, {"primitives", kObjects, kRequired, kPrimitive, "primitive"}, {"extras", kMark}};
+constexpr Field kMesh[] = {{"name", kText},
+                           {"primitives", kObjects, kRequired, kPrimitive, "primitive"},
+                           numbers("weights", 0),
+                           {"extras", kMark}};
 
 constexpr Field kBuffer[] = {{"byteLength", kSize, kRequired}, {"uri", kText}};
 constexpr Field kBufferView[] = {{"buffer", kIndex, kRequired},
@@ -86,7 +102,10 @@ constexpr Field kCamera[] = {
     {"orthographic", kObject, kOptional, kOrthographic},
 };
 
-constexpr Field kTarget[] = {{"node", kIndex}, {"path", kText, kRequired}};
+constexpr Field kAnimationPointer[] = {{"pointer", kText}};
+constexpr Field kTargetExtensions[] = {{"KHR_animation_pointer", kObject, kOptional, kAnimationPointer}};
+constexpr Field kTarget[] = {
+    {"node", kIndex}, {"path", kText, kRequired}, {"extensions", kObject, kOptional, kTargetExtensions}};
 constexpr Field kChannel[] = {{"sampler", kIndex, kRequired}, {"target", kObject, kRequired, kTarget}};
 constexpr Field kSampler[] = {
     {"input", kIndex, kRequired}, {"output", kIndex, kRequired}, {"interpolation", kText}};

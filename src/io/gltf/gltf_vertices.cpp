@@ -45,7 +45,12 @@ Result<Vec3d> placeByJoints(const Document& document, const PrimitiveSource& sou
 
 Result<Vec3d> placeVertex(const Document& document, const PrimitiveSource& source, const Placement& placement,
                           std::uint64_t index) {
-  const Vec3d point = vectorAt(*source.positions, index);
+  Vec3d point = vectorAt(*source.positions, index);
+  for (const ActiveTarget& target : placement.targets) {
+    if (target.number < source.targets.size() && source.targets[target.number] != nullptr) {
+      point += vectorAt(*source.targets[target.number], index) * target.weight;
+    }
+  }
   if (!isFinite(point)) {
     return failure("{}: {}: vertex {} of accessor {} is not finite", document.name, source.where, index,
                    source.position_accessor);

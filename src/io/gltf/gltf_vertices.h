@@ -9,8 +9,9 @@ namespace sightline::io {
 // Where one object's vertices are placed.
 struct Placement {
   Mat4 world_from_node;
-  std::span<const Mat4> joints{};  // of its skin, as Skins::open() makes them; empty: it has none
-  std::size_t node = 0;            // its number, in errors
+  std::span<const ActiveTarget> targets{};  // morph targets that displace its vertices
+  std::span<const Mat4> joints{};           // of its skin, as Skins::open() makes them; empty: it has none
+  std::size_t node = 0;                     // its number, in errors
 };
 
 // The world position of a vertex. Precondition: index < positions->count().
