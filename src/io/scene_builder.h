@@ -35,6 +35,7 @@ class SceneBuilder {
   explicit SceneBuilder(const ImportLimits& limits) : limits_(limits) {}
 
   MaterialId addMaterial(Material material);
+  const Material& material(MaterialId id) const { return scene_.materials[id.value]; }
 
   // Whether this many more triangles stay within the limits. Ask before adding.
   bool fits(std::uint64_t triangles) const {

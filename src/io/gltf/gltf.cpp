@@ -1,33 +1,16 @@
 #include "src/io/gltf/gltf.h"
 
-#include <algorithm>
-#include <array>
 #include <exception>
 #include <new>
 
 #include "sightline/io/import.h"
+#include "src/io/gltf/gltf_extensions.h"
 #include "src/io/gltf/gltf_json.h"
 #include "src/io/gltf/gltf_model.h"
 
 namespace sightline {
 namespace io {
 namespace {
-
-// Extensions that change nothing of what we read (they are about shading, light and metadata), or that we do
-// read.
-constexpr std::array<std::string_view, 6> kHonouredExtensions = {
-    "KHR_node_visibility", "KHR_mesh_quantization", "KHR_texture_transform",
-    "KHR_texture_basisu",  "KHR_lights_punctual",   "KHR_xmp_json_ld",
-};
-constexpr std::array<std::string_view, 2> kHonouredTextureFormats = {"EXT_texture_webp", "MSFT_texture_dds"};
-
-bool honoured(std::string_view extension) {
-  return extension.substr(0, 14) == "KHR_materials_" ||
-         std::find(kHonouredExtensions.begin(), kHonouredExtensions.end(), extension) !=
-             kHonouredExtensions.end() ||
-         std::find(kHonouredTextureFormats.begin(), kHonouredTextureFormats.end(), extension) !=
-             kHonouredTextureFormats.end();
-}
 
 // What nothing that follows checks, because it is not used or would be read in another way.
 Status checkParts(const Document& document) {
@@ -96,7 +79,7 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
     return checked.error();
   }
   for (const std::string& extension : checked->extensions_required) {
-    if (!honoured(extension)) {
+    if (!mayBeRequired(extension)) {
       return failure("{}: requires the extension \"{}\", which is not supported; export the scene without it",
                      name, extension);
     }
@@ -108,6 +91,7 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
   document.buffers = std::move(*buffers);
   document.file = std::move(checked->file);
   document.moving = movingParts(document.file);
+  document.note = noteOnExtensions(checked->extensions_used);
   Status status = checkParts(document);
   if (status) {
     status = checkSparseWork(document);
@@ -125,6 +109,9 @@ Result<Scene> convert(const Document& document) {
   }
   Accessors accessors(document);
   SceneBuilder builder(document.limits);
+  if (!document.note.empty()) {
+    builder.addNote(document.note);
+  }
   Status status = addMaterials(document, builder);
   if (status) {
     status = addObjects(document, *tree, accessors, builder);

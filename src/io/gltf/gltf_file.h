@@ -63,12 +63,18 @@ struct GltfFile {
     int material = -1;
     std::vector<int> targets;  // accessors of how the morph targets displace POSITION; -1: not at all
     int mode = PrimitiveMode::kTriangles;
+    std::vector<int> variants;  // materials that KHR_materials_variants may put in the place of its own
   };
   struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
     std::vector<double> weights;   // of the morph targets
     std::optional<bool> occluder;  // extras
+  };
+
+  // EXT_mesh_gpu_instancing
+  struct Instances {
+    int translations = -1, rotations = -1, scales = -1;  // accessors
   };
 
   struct Node {
@@ -80,7 +86,8 @@ struct GltfFile {
     std::optional<std::array<double, 16>> matrix;
     NodePose pose;                               // of a node without a matrix
     std::optional<std::vector<double>> weights;  // instead of the mesh's
-    bool visible = true;                         // KHR_node_visibility
+    std::optional<Instances> instances;
+    bool visible = true;     // KHR_node_visibility
     bool exchanged = false;  // an extension lets it move, or shows others in its place at times
     std::optional<bool> occluder;
   };
@@ -98,7 +105,7 @@ struct GltfFile {
     std::string alpha_mode = "OPAQUE";
     bool double_sided = false;
     std::array<double, 4> base_color{1, 1, 1, 1};
-    double transmission = 0.0;
+    double transmission = 0.0;  // the largest of all extensions that let light through
     std::optional<bool> occluder;
   };
 

@@ -277,6 +277,9 @@ Result<CheckedJson> checkJson(std::string_view text, const ImportLimits& limits,
     return failure("{}: is glTF version \"{}\"; only version 2 is supported", name, version);
   }
   CheckedJson checked;
+  if (document.contains("extensionsUsed")) {
+    checked.extensions_used = document["extensionsUsed"].get<std::vector<std::string>>();
+  }
   if (document.contains("extensionsRequired")) {
     checked.extensions_required = document["extensionsRequired"].get<std::vector<std::string>>();
   }

@@ -30,7 +30,7 @@ struct BufferSource {
 struct CheckedJson {
   GltfFile file;
   std::vector<BufferSource> buffers;
-  std::vector<std::string> extensions_required;
+  std::vector<std::string> extensions_used, extensions_required;
 };
 Result<CheckedJson> checkJson(std::string_view json, const ImportLimits& limits, const std::string& name);
 

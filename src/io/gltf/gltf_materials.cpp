@@ -11,12 +11,8 @@ Result<Material> convert(const Document& document, std::size_t number) {
   Material material;
   material.name = source.name.empty() ? fmt::format("material{}", number) : source.name;
   material.double_sided = source.double_sided;
-  // Transmission lets light through whatever the alpha mode says.
-  if (source.alpha_mode == "BLEND" || source.transmission > 0.0) {
-    material.opacity = Opacity::kBlended;
-  } else if (source.alpha_mode == "MASK") {
-    material.opacity = Opacity::kAlphaTested;
-  } else if (source.alpha_mode != "OPAQUE") {
+  material.opacity = opacityOf(document, number);
+  if (source.alpha_mode != "OPAQUE" && source.alpha_mode != "MASK" && source.alpha_mode != "BLEND") {
     return failure("{}: material {}: alpha mode \"{}\" is not OPAQUE, MASK or BLEND", document.name, number,
                    source.alpha_mode);
   }
@@ -26,6 +22,15 @@ Result<Material> convert(const Document& document, std::size_t number) {
 }
 
 }  // namespace
+
+Opacity opacityOf(const Document& document, std::size_t number) {
+  const GltfFile::Material& material = document.file.materials[number];
+  // Transmission lets light through whatever the alpha mode says.
+  if (material.alpha_mode == "BLEND" || material.transmission > 0.0 || document.moving.materials[number]) {
+    return Opacity::kBlended;
+  }
+  return material.alpha_mode == "MASK" ? Opacity::kAlphaTested : Opacity::kOpaque;
+}
 
 Status addMaterials(const Document& document, SceneBuilder& builder) {
   for (std::size_t i = 0; i < document.file.materials.size(); ++i) {

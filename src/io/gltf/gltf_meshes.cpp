@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <tuple>
 
+#include "src/io/gltf/gltf_instances.h"
 #include "src/io/gltf/gltf_primitives.h"
 #include "src/io/gltf/gltf_skins.h"
 #include "src/io/gltf/gltf_vertices.h"
@@ -8,11 +11,14 @@
 namespace sightline::io {
 namespace {
 
+constexpr std::uint64_t kNumberBytes = 24;  // "/primitive" and a number, or the like, in a name
+
 class ObjectAdder {
  public:
   ObjectAdder(const Document& document, const NodeTree& tree, Accessors& accessors, SceneBuilder& builder)
       : document_(document),
         tree_(tree),
+        accessors_(accessors),
         builder_(builder),
         meshes_(document, accessors),
         skins_(document, tree, accessors) {}
@@ -20,59 +26,40 @@ class ObjectAdder {
   // Instances multiply: their sum is known before the first is made.
   Status checkLimits() {
     const ImportLimits& limits = document_.limits;
-    // Far beyond every limit; a sum of two does not overflow.
-    constexpr std::uint64_t kMany = std::uint64_t{1} << 62;
-    const auto times = [](std::uint64_t a, std::uint64_t b) {
-      return b > 0 && a > kMany / b ? kMany : a * b;
-    };
-    std::uint64_t objects = 0;
-    std::uint64_t triangles = 0, vertices = 0, implied_vertices = 0;
-    std::uint64_t name_bytes = 0;
+    Sums sums;
     for (const int node : tree_.visited) {
-      const auto number = static_cast<std::size_t>(node);
-      const Result<const MeshSource*> mesh = meshOf(number);
-      if (!mesh) {
-        return mesh.error();
+      const Status added = addTo(sums, static_cast<std::size_t>(node));
+      if (!added) {
+        return added;
       }
-      if (*mesh == nullptr) {
-        continue;
-      }
-      const std::uint64_t count = (*mesh)->primitives.size();
-      objects += count;
-      triangles += (*mesh)->triangles;
-      const GltfFile::Node& source = document_.file.nodes[number];
-      const std::uint64_t targets =
-          source.weights ? activeTargets(*source.weights).size() : (*mesh)->active_targets.size();
-      vertices += times((*mesh)->vertices, 1 + targets);
-      vertices = std::min(vertices, kMany) + (source.skin < 0 ? 0 : (*mesh)->joint_vertices);
-      implied_vertices += (*mesh)->implied_vertices;
-      name_bytes += count * (document_.file.nodes[number].name.size() + 24);
-      if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
+      if (sums.objects > limits.objects || sums.triangles > limits.triangles ||
+          sums.name_bytes > limits.name_bytes) {
         return failure(
             "{}: node {}: up to here the scene has {} objects, {} triangles and {} bytes of names; at most "
-            "{}, "
-            "{} and {} are read",
-            document_.name, node, objects, triangles, name_bytes, limits.objects, limits.triangles,
-            limits.name_bytes);
+            "{}, {} and {} are read",
+            document_.name, node, sums.objects, sums.triangles, sums.name_bytes, limits.objects,
+            limits.triangles, limits.name_bytes);
       }
-      if (vertices > limits.vertices || implied_vertices > limits.implied_vertices) {
+      if (sums.vertices > limits.vertices || sums.implied_vertices > limits.implied_vertices) {
         return failure(
             "{}: node {}: up to here the scene has {} vertices, {} of them without a buffer view; at most {} "
             "and {} are read",
-            document_.name, node, vertices, implied_vertices, limits.vertices, limits.implied_vertices);
+            document_.name, node, sums.vertices, sums.implied_vertices, limits.vertices,
+            limits.implied_vertices);
       }
     }
     return Success{};
   }
 
-  // One object for each primitive with triangles of the node's mesh.
+  // One object for each primitive with triangles of the node's mesh; of each of its instances, if it has
+  // some.
   Status addNode(std::size_t node_number) {
     const Result<const MeshSource*> mesh = meshOf(node_number);
     if (!mesh) {
       return mesh.error();
     }
-    if (*mesh == nullptr) {
-      return Success{};
+    if (*mesh == nullptr || (*mesh)->primitives.empty()) {
+      return Success{};  // however many instances of nothing there are
     }
     Result<Placement> placement = placementOf(node_number);
     if (!placement) {
@@ -82,13 +69,19 @@ class ObjectAdder {
     const std::vector<ActiveTarget> own_targets =
         node.weights ? activeTargets(*node.weights) : std::vector<ActiveTarget>();
     placement->targets = node.weights ? own_targets : (*mesh)->active_targets;
-    for (const PrimitiveSource& primitive : (*mesh)->primitives) {
-      if (!placement->joints.empty() && primitive.joints.empty()) {
-        return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,
-                       node_number, primitive.where);
+    const Result<InstanceSource> instances = openInstances(document_, node_number, accessors_);
+    if (!instances) {
+      return instances.error();
+    }
+    if (instances->listed && node.skin >= 0) {
+      return failure("{}: node {}: has both instances and a skin", document_.name, node_number);
+    }
+    for (std::uint64_t i = 0; i < instances->count; ++i) {
+      if (instances->listed) {
+        placement->instance = i;
+        placement->world_from_node = tree_.world_from_node[node_number] * instances->nodeFromInstance(i);
       }
-      addObject(primitive, *placement);
-      const Status status = addTriangles(primitive, *placement);
+      const Status status = addPrimitives(**mesh, *placement);
       if (!status) {
         return status;
       }
@@ -122,6 +115,59 @@ class ObjectAdder {
     return meshes_.open(static_cast<std::size_t>(mesh));
   }
 
+  // What all nodes together come to. No number overflows: each is at most kMany when another is added to it.
+  struct Sums {
+    std::uint64_t objects = 0, triangles = 0, name_bytes = 0;
+    std::uint64_t vertices = 0;  // those that morph targets or joints move count once more for each of them
+    std::uint64_t implied_vertices = 0;
+  };
+  static constexpr std::uint64_t kMany = std::uint64_t{1} << 62;  // far beyond every limit
+  static std::uint64_t product(std::uint64_t a, std::uint64_t b) {
+    return b > 0 && a > kMany / b ? kMany : a * b;
+  }
+
+  Status addTo(Sums& sums, std::size_t node_number) {
+    const Result<const MeshSource*> found = meshOf(node_number);
+    if (!found) {
+      return found.error();
+    }
+    if (*found == nullptr) {
+      return Success{};
+    }
+    const Result<InstanceSource> instances = openInstances(document_, node_number, accessors_);
+    if (!instances) {
+      return instances.error();
+    }
+    const MeshSource& mesh = **found;
+    const GltfFile::Node& node = document_.file.nodes[node_number];
+    const std::uint64_t targets =
+        node.weights ? activeTargets(*node.weights).size() : mesh.active_targets.size();
+    const std::uint64_t vertices =
+        std::min(product(mesh.vertices, 1 + targets), kMany / 2) + (node.skin < 0 ? 0 : mesh.joint_vertices);
+    const std::uint64_t objects = product(instances->count, mesh.primitives.size());
+    sums.objects += objects;
+    sums.name_bytes += product(objects, node.name.size() + kNumberBytes * (instances->listed ? 2 : 1));
+    sums.triangles += product(instances->count, mesh.triangles);
+    sums.vertices += product(instances->count, vertices);
+    sums.implied_vertices += product(instances->count, mesh.implied_vertices);
+    return Success{};
+  }
+
+  Status addPrimitives(const MeshSource& mesh, const Placement& placement) {
+    for (const PrimitiveSource& primitive : mesh.primitives) {
+      if (!placement.joints.empty() && primitive.joints.empty()) {
+        return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,
+                       placement.node, primitive.where);
+      }
+      addObject(primitive, placement);
+      const Status status = addTriangles(primitive, placement);
+      if (!status) {
+        return status;
+      }
+    }
+    return Success{};
+  }
+
   Result<Placement> placementOf(std::size_t node_number) {
     Placement placement{.world_from_node = tree_.world_from_node[node_number], .node = node_number};
     const int skin = document_.file.nodes[node_number].skin;
@@ -140,13 +186,33 @@ class ObjectAdder {
     const GltfFile::Node& node = document_.file.nodes[node_number];
     const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::string name = node.name.empty() ? fmt::format("node{}", node_number) : node.name;
+    if (placement.instance) {
+      name += fmt::format("/instance{}", *placement.instance);
+    }
     if (mesh.primitives.size() > 1) {
       name += fmt::format("/primitive{}", primitive.number);
     }
     builder_.beginObject(std::move(name), materialOf(primitive), markFor(primitive, placement));
   }
 
+  // Its own material, or one like it that is as weak as its variants.
   MaterialId materialOf(const PrimitiveSource& primitive) {
+    const MaterialId own = ownMaterialOf(primitive);
+    const Material& material = builder_.material(own);
+    if (material.opacity == primitive.opacity && material.double_sided == primitive.double_sided) {
+      return own;
+    }
+    MaterialId& weakened = weakened_[{own.value, primitive.opacity, primitive.double_sided}];
+    if (!weakened.valid()) {
+      Material copy = material;
+      copy.opacity = primitive.opacity;
+      copy.double_sided = primitive.double_sided;
+      weakened = builder_.addMaterial(std::move(copy));
+    }
+    return weakened;
+  }
+
+  MaterialId ownMaterialOf(const PrimitiveSource& primitive) {
     if (primitive.material >= 0) {
       return MaterialId(static_cast<std::uint32_t>(primitive.material));
     }
@@ -164,9 +230,7 @@ class ObjectAdder {
     const GltfFile::Node& node = document_.file.nodes[placement.node];
     const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::optional<bool> occluder = node.occluder ? node.occluder : mesh.occluder;
-    if (!occluder && primitive.material >= 0) {
-      occluder = document_.file.materials[static_cast<std::size_t>(primitive.material)].occluder;
-    }
+    occluder = occluder ? occluder : primitive.occluder;
     if (!occluder && moves(primitive, placement)) {
       ++moving_;
       return OccluderMark::kNever;
@@ -235,11 +299,13 @@ class ObjectAdder {
 
   const Document& document_;
   const NodeTree& tree_;
+  Accessors& accessors_;
   SceneBuilder& builder_;
   MeshSources meshes_;
   Skins skins_;
   std::uint64_t moving_ = 0;  // objects that hide nothing because they move
   MaterialId default_material_;
+  std::map<std::tuple<std::uint32_t, Opacity, bool>, MaterialId> weakened_;
   std::vector<Slot> slots_;
   std::uint32_t object_ = 0;
 };

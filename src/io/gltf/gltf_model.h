@@ -30,6 +30,7 @@ struct Document {
   ImportLimits limits;
   GltfFile file;
   Moving moving;
+  std::string note;  // on its extensions, for the user
   Buffers buffers;
 };
 
@@ -44,6 +45,9 @@ class AccessorView {
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
   double number(std::uint64_t element, int component) const;
+  Vec3d vector(std::uint64_t element) const {
+    return {number(element, 0), number(element, 1), number(element, 2)};
+  }
   // Precondition: the accessor holds integers, and element < count().
   std::uint32_t index(std::uint64_t element) const;
 
@@ -91,6 +95,9 @@ struct NodeTree {
 Result<NodeTree> buildNodeTree(const Document& document);
 
 Mat4 matrixOf(const NodePose& pose);
+
+// Whether a material can be seen through. Precondition: it exists.
+Opacity opacityOf(const Document& document, std::size_t material);
 
 Status addMaterials(const Document& document, SceneBuilder& builder);
 Status addObjects(const Document& document, const NodeTree& tree, Accessors& accessors,

@@ -96,6 +96,10 @@ int morphTarget(const json& source) {
   return positions;
 }
 
+int mapping(const json& source) {
+  return source["material"].get<int>();
+}
+
 GltfFile::Primitive primitive(const json& source) {
   GltfFile::Primitive primitive;
   const json& attributes = source["attributes"];
@@ -106,6 +110,9 @@ GltfFile::Primitive primitive(const json& source) {
   take(source, "material", primitive.material);
   take(source, "mode", primitive.mode);
   takeAll(source, "targets", primitive.targets, morphTarget);
+  if (source.contains("extensions") && source["extensions"].contains("KHR_materials_variants")) {
+    takeAll(source["extensions"]["KHR_materials_variants"], "mappings", primitive.variants, mapping);
+  }
   return primitive;
 }
 
@@ -121,6 +128,14 @@ GltfFile::Mesh mesh(const json& source) {
 void takeExtensions(const json& extensions, GltfFile::Node& node) {
   if (extensions.contains("KHR_node_visibility")) {
     take(extensions["KHR_node_visibility"], "visible", node.visible);
+  }
+  if (extensions.contains("EXT_mesh_gpu_instancing")) {
+    const json& attributes = extensions["EXT_mesh_gpu_instancing"]["attributes"];
+    GltfFile::Instances instances;
+    take(attributes, "TRANSLATION", instances.translations);
+    take(attributes, "ROTATION", instances.rotations);
+    take(attributes, "SCALE", instances.scales);
+    node.instances = instances;
   }
   node.exchanged = extensions.contains("MSFT_lod") || extensions.contains("AGI_articulations") ||
                    (extensions.contains("KHR_physics_rigid_bodies") &&
@@ -164,6 +179,24 @@ GltfFile::Scene scene(const json& source) {
   return scene;
 }
 
+// The largest factor of those that let light through. Diffuse light too: what lies behind is guessed by it.
+double transmission(const json& extensions) {
+  double factor = 0.0, largest = 0.0;
+  if (extensions.contains("KHR_materials_transmission")) {
+    take(extensions["KHR_materials_transmission"], "transmissionFactor", largest);
+  }
+  if (extensions.contains("KHR_materials_diffuse_transmission")) {
+    take(extensions["KHR_materials_diffuse_transmission"], "diffuseTransmissionFactor", factor);
+    largest = std::max(largest, factor);
+  }
+  if (extensions.contains("ADOBE_materials_thin_transparency")) {
+    factor = 1.0;  // unless it says otherwise
+    take(extensions["ADOBE_materials_thin_transparency"], "transmissionFactor", factor);
+    largest = std::max(largest, factor);
+  }
+  return largest;
+}
+
 GltfFile::Material material(const json& source) {
   GltfFile::Material material;
   take(source, "name", material.name);
@@ -172,8 +205,8 @@ GltfFile::Material material(const json& source) {
   if (source.contains("pbrMetallicRoughness")) {
     take(source["pbrMetallicRoughness"], "baseColorFactor", material.base_color);
   }
-  if (source.contains("extensions") && source["extensions"].contains("KHR_materials_transmission")) {
-    take(source["extensions"]["KHR_materials_transmission"], "transmissionFactor", material.transmission);
+  if (source.contains("extensions")) {
+    material.transmission = transmission(source["extensions"]);
   }
   material.occluder = occluderMark(source);
   return material;

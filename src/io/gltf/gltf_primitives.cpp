@@ -89,12 +89,10 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
   if (source.mode < PrimitiveMode::kTriangles) {
     return source;  // points and lines
   }
-  const std::size_t materials = document_.file.materials.size();
-  if (source.material >= 0 && !isIndexInto(source.material, materials)) {
-    return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
-                   source.material, materials);
+  Status status = openMaterials(primitive, source);
+  if (status) {
+    status = openAccessors(primitive, source);
   }
-  Status status = openAccessors(primitive, source);
   if (status) {
     status = openTargets(primitive, source);
   }
@@ -112,6 +110,34 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
   source.triangles = source.mode == PrimitiveMode::kTriangles ? corners / 3 : strung;
   source.vertices = std::min(corners, source.positions->count());
   return source;
+}
+
+Status MeshSources::openMaterials(const GltfFile::Primitive& primitive, PrimitiveSource& source) const {
+  const std::vector<GltfFile::Material>& materials = document_.file.materials;
+  const auto add = [&](int material, bool own) {
+    if (!isIndexInto(material, materials.size())) {
+      return false;
+    }
+    const auto number = static_cast<std::size_t>(material);
+    const Opacity opacity = opacityOf(document_, number);
+    if (opacity == Opacity::kBlended || source.opacity == Opacity::kOpaque) {
+      source.opacity = opacity;
+    }
+    source.double_sided = (own || source.double_sided) && materials[number].double_sided;
+    if (own || materials[number].occluder == false) {
+      source.occluder = materials[number].occluder;
+    }
+    return true;
+  };
+  int missing = primitive.material < 0 || add(primitive.material, true) ? -1 : primitive.material;
+  for (const int variant : primitive.variants) {
+    missing = missing >= 0 || add(variant, false) ? missing : variant;
+  }
+  if (missing >= 0) {
+    return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
+                   missing, materials.size());
+  }
+  return Success{};
 }
 
 Status MeshSources::openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source) {

@@ -15,6 +15,10 @@ struct PrimitiveSource {
   std::string where;  // "mesh 3 primitive 0", for errors
   std::size_t number = 0;
   int material = -1;
+  // The weakest of its material and those that variants put in its place: what it surely hides.
+  Opacity opacity = Opacity::kOpaque;
+  bool double_sided = false;
+  std::optional<bool> occluder;  // mark of its material; false if any material has that
   int mode = PrimitiveMode::kTriangles;
   int position_accessor = -1;
   const AccessorView* positions = nullptr;
@@ -54,6 +58,7 @@ class MeshSources {
 
  private:
   Result<PrimitiveSource> openPrimitive(std::size_t mesh, std::size_t number);
+  Status openMaterials(const GltfFile::Primitive& primitive, PrimitiveSource& source) const;
   Status openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source);
   Status openTargets(const GltfFile::Primitive& primitive, PrimitiveSource& source);
   Status openJoints(const GltfFile::Primitive& primitive, PrimitiveSource& source);

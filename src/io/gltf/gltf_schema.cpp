@@ -24,7 +24,10 @@ constexpr std::span<const Field> kAny{};
 
 constexpr Field kVisibility[] = {{"visible", kFlag}};
 constexpr Field kPhysics[] = {{"motion", kObject, kOptional, kAny}};
+constexpr Field kInstanceAttributes[] = {{"TRANSLATION", kIndex}, {"ROTATION", kIndex}, {"SCALE", kIndex}};
+constexpr Field kInstancing[] = {{"attributes", kObject, kRequired, kInstanceAttributes}};
 constexpr Field kNodeExtensions[] = {
+    {"EXT_mesh_gpu_instancing", kObject, kOptional, kInstancing},
     {"KHR_node_visibility", kObject, kOptional, kVisibility},
     {"KHR_physics_rigid_bodies", kObject, kOptional, kPhysics},
     {"MSFT_lod", kObject, kOptional, kAny},
@@ -40,6 +43,9 @@ constexpr Field kNode[] = {
 constexpr Field kSkin[] = {{"joints", kIndices, kRequired}, {"inverseBindMatrices", kIndex}};
 
 constexpr Field kAttributes[] = {{"POSITION", kIndex}, {"JOINTS_", kSets}, {"WEIGHTS_", kSets}};
+constexpr Field kMapping[] = {{"material", kIndex, kRequired}};
+constexpr Field kVariants[] = {{"mappings", kObjects, kRequired, kMapping, "mapping"}};
+constexpr Field kPrimitiveExtensions[] = {{"KHR_materials_variants", kObject, kOptional, kVariants}};
 constexpr Field kMorphTarget[] = {{"POSITION", kIndex}};
 constexpr Field kPrimitive[] = {
     {"attributes", kObject, kRequired, kAttributes},
@@ -47,6 +53,7 @@ constexpr Field kPrimitive[] = {
     {"material", kIndex},
     {"mode", kIndex},
     {"targets", kObjects, kOptional, kMorphTarget, "target"},
+    {"extensions", kObject, kOptional, kPrimitiveExtensions},
 };
 constexpr Field kMesh[] = {{"name", kText},
                            {"primitives", kObjects, kRequired, kPrimitive, "primitive"},
@@ -79,7 +86,12 @@ constexpr Field kAccessor[] = {
 
 constexpr Field kMetallicRoughness[] = {numbers("baseColorFactor", 4)};
 constexpr Field kTransmission[] = {{"transmissionFactor", kNumber}};
-constexpr Field kMaterialExtensions[] = {{"KHR_materials_transmission", kObject, kOptional, kTransmission}};
+constexpr Field kDiffuseTransmission[] = {{"diffuseTransmissionFactor", kNumber}};
+constexpr Field kMaterialExtensions[] = {
+    {"KHR_materials_transmission", kObject, kOptional, kTransmission},
+    {"KHR_materials_diffuse_transmission", kObject, kOptional, kDiffuseTransmission},
+    {"ADOBE_materials_thin_transparency", kObject, kOptional, kTransmission},
+};
 constexpr Field kMaterial[] = {
     {"name", kText},
     {"alphaMode", kText},
@@ -117,6 +129,7 @@ constexpr Field kAnimation[] = {
 
 constexpr Field kDocument[] = {
     {"asset", kObject, kRequired, kAsset},
+    {"extensionsUsed", kTexts},
     {"extensionsRequired", kTexts},
     {"scene", kIndex},
     {"scenes", kObjects, kOptional, kScene, "scene"},

@@ -5,10 +5,6 @@
 namespace sightline::io {
 namespace {
 
-Vec3d vectorAt(const AccessorView& view, std::uint64_t index) {
-  return {view.number(index, 0), view.number(index, 1), view.number(index, 2)};
-}
-
 // The mean of where its joints take a point, by weight. Weights that do not add up to 1 are divided by their
 // sum: so does the perspective division of renderers that add up matrices.
 Result<Vec3d> placeByJoints(const Document& document, const PrimitiveSource& source,
@@ -45,10 +41,10 @@ Result<Vec3d> placeByJoints(const Document& document, const PrimitiveSource& sou
 
 Result<Vec3d> placeVertex(const Document& document, const PrimitiveSource& source, const Placement& placement,
                           std::uint64_t index) {
-  Vec3d point = vectorAt(*source.positions, index);
+  Vec3d point = source.positions->vector(index);
   for (const ActiveTarget& target : placement.targets) {
     if (target.number < source.targets.size() && source.targets[target.number] != nullptr) {
-      point += vectorAt(*source.targets[target.number], index) * target.weight;
+      point += source.targets[target.number]->vector(index) * target.weight;
     }
   }
   if (!isFinite(point)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "src/io/gltf/gltf_primitives.h"
@@ -8,10 +9,11 @@ namespace sightline::io {
 
 // Where one object's vertices are placed.
 struct Placement {
-  Mat4 world_from_node;
+  Mat4 world_from_node;                     // or from an instance of its mesh
   std::span<const ActiveTarget> targets{};  // morph targets that displace its vertices
   std::span<const Mat4> joints{};           // of its skin, as Skins::open() makes them; empty: it has none
-  std::size_t node = 0;                     // its number, in errors
+  std::optional<std::uint64_t> instance{};
+  std::size_t node = 0;  // its number, in errors
 };
 
 // The world position of a vertex. Precondition: index < positions->count().
