@@ -21,6 +21,7 @@
 #include "sightline/math/mat4.h"
 #include "src/base/byte_stream.h"
 #include "src/io/child_process.h"
+#include "src/io/corner_order.h"
 #include "src/io/failure.h"
 #include "src/io/polygon_triangles.h"
 #include "src/io/scene_bytes.h"
@@ -183,9 +184,12 @@ class AssimpConverter {
       return failure("{}: mesh {}: with its {} triangles the scene exceeds {} triangles", name_, number,
                      triangles, limits_.triangles);
     }
-    builder_.beginObject(std::move(object_name), MaterialId(mesh.mMaterialIndex), OccluderMark::kAutomatic);
+    constexpr double kRounding = 1e-6;  // of matrices that Assimp multiplies in single precision
+    const CornerOrder order = cornerOrder(world_from_node, kRounding);
+    builder_.beginObject(std::move(object_name), MaterialId(mesh.mMaterialIndex),
+                         order == CornerOrder::kUnknown ? OccluderMark::kNever : OccluderMark::kAutomatic);
     vertex_of_.assign(mesh.mNumVertices, kNone);
-    const bool mirrored = determinant3(world_from_node) < 0.0;
+    const bool mirrored = order == CornerOrder::kReversed;
     for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
       if (isPolygon(mesh.mFaces[face])) {
         const Status status = addFace(mesh, number, face, world_from_node, mirrored);

@@ -145,6 +145,38 @@ constexpr const char* kPly =
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n2 0 0\n2 3 0\n0 3 0\n4 0 1 2 3\n";
 
+// A triangle in a node that is turned below one of the given scale.
+std::string flattenedDae(const char* scale) {
+  return fmt::format(R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="turned"><rotate>1 2 3 40</rotate>
+<node id="flat"><scale>{}</scale><node id="n"><rotate>3 1 2 70</rotate><instance_geometry url="#g"/></node>
+</node></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+)",
+                     scale);
+}
+
+TEST_F(Files, WhatATransformFlattensHidesNothing) {
+  for (const auto& [scale, mark] :
+       {std::pair("1 1 0", OccluderMark::kNever), std::pair("1 1 0.001", OccluderMark::kAutomatic),
+        std::pair("1 1 -1", OccluderMark::kAutomatic)}) {
+    const Result<Scene> scene = importScene(folder.write("flat.dae", flattenedDae(scale)));
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->objects.size(), 1u);
+    EXPECT_EQ(scene->objects[0].mark, mark) << scale;
+  }
+}
+
 TEST_F(Files, PlyIsReadInTriangles) {
   const Result<Scene> scene = importScene(folder.write("a.PLY", kPly));
   ASSERT_TRUE(scene) << scene.error().message;

@@ -1,7 +1,10 @@
-// Extensions that change what is seen through and what is shown where.
+// Extensions that change what is seen through and what is shown where, and transforms that flatten.
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "src/io/corner_order.h"
 #include "src/io/gltf/gltf.h"
 #include "tests/io/glb_builder.h"
 #include "tests/io/scene_checks.h"
@@ -225,6 +228,52 @@ TEST(GltfExtension, UnknownExtensionsAreNamedInANote) {
       << scene.notes[0];
   glb.json["extensionsUsed"] = std::vector<std::string>(100, std::string(1000, 'x'));
   EXPECT_LT(imported(glb.bytes()).notes.at(0).size(), 1000u);
+}
+
+TEST(GltfFlat, TransformsThatFlattenHideNothingWhateverTheirMark) {
+  // A plane z = 0 of a parent without depth, below which nodes are turned: the determinant is a rounding
+  // error, whose sign depends on the angle.
+  int flattened = 0;
+  for (int step = 1; step < 60; ++step) {
+    const double angle = 0.05 * step;
+    Glb glb = oneTriangle();
+    glb.json["nodes"][0]["rotation"] = {0.6 * std::sin(angle), 0.8 * std::sin(angle), 0, std::cos(angle)};
+    glb.json["nodes"][0]["extras"] = {{"occluder", true}};
+    glb.addNode({{"scale", {1, 1, 0}}, {"children", {0}}});
+    glb.addNode({{"rotation", {0.48 * std::sin(angle), 0, 0.64 * std::sin(angle), 0.6}}, {"children", {1}}});
+    glb.json["scenes"][0]["nodes"] = {2};
+    flattened += imported(glb.bytes()).objects[0].mark == OccluderMark::kNever ? 1 : 0;
+    glb.json["nodes"][1]["scale"] = {1, 1, 1e-5};
+    EXPECT_EQ(imported(glb.bytes()).objects[0].mark, OccluderMark::kOccluder) << "thin, but not flat";
+  }
+  EXPECT_EQ(flattened, 59);
+  Glb glb = oneTriangle();
+  glb.json["nodes"][0]["scale"] = {1, 1, 0};
+  EXPECT_EQ(imported(glb.bytes()).objects[0].mark, OccluderMark::kNever);
+  glb.json["nodes"][0]["scale"] = {1e-30, 1e-30, 1e-30};
+  EXPECT_EQ(imported(glb.bytes()).objects[0].mark, OccluderMark::kAutomatic) << "small, but not flat";
+}
+
+TEST(GltfFlat, TheOrderOfCornersIsUnknownOnlyWhereNothingTellsIt) {
+  using io::CornerOrder;
+  using io::cornerOrder;
+  const auto scaled = [](double x, double y, double z) {
+    Mat4 matrix;
+    matrix(0, 0) = x;
+    matrix(1, 1) = y;
+    matrix(2, 2) = z;
+    return matrix;
+  };
+  EXPECT_EQ(cornerOrder(scaled(1, 1, 1)), CornerOrder::kKept);
+  EXPECT_EQ(cornerOrder(scaled(1, 1, -1e-100)), CornerOrder::kReversed);
+  EXPECT_EQ(cornerOrder(scaled(-1e90, -1e-90, 1)), CornerOrder::kKept);
+  EXPECT_EQ(cornerOrder(scaled(1, 1, 0)), CornerOrder::kUnknown);
+  EXPECT_EQ(cornerOrder(scaled(0, 0, 0)), CornerOrder::kUnknown);
+  Mat4 sheared = scaled(1, 1, 1e-13);
+  sheared(0, 2) = 1;
+  EXPECT_EQ(cornerOrder(sheared), CornerOrder::kUnknown);
+  sheared(2, 2) = -1e-11;
+  EXPECT_EQ(cornerOrder(sheared), CornerOrder::kReversed);
 }
 
 }  // namespace

@@ -153,7 +153,13 @@ class ObjectAdder {
     return Success{};
   }
 
-  Status addPrimitives(const MeshSource& mesh, const Placement& placement) {
+  Status addPrimitives(const MeshSource& mesh, Placement& placement) {
+    const CornerOrder order = cornerOrder(placement.world_from_node);
+    // The node of a skinned mesh does not place it, and no renderer looks at the determinants of joints: the
+    // order stays as it is, also where joints mirror. But some turn it over where the node mirrors.
+    placement.order = placement.joints.empty()          ? order
+                      : order == CornerOrder::kReversed ? CornerOrder::kUnknown
+                                                        : CornerOrder::kKept;
     for (const PrimitiveSource& primitive : mesh.primitives) {
       if (!placement.joints.empty() && primitive.joints.empty()) {
         return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,
@@ -225,8 +231,12 @@ class ObjectAdder {
   }
 
   // Node, then mesh, then material. What moves and has no mark hides nothing: where it stands in the file, it
-  // stands only for a while.
+  // stands only for a while. What is flat, and may have its front on either side, hides nothing whatever its
+  // mark.
   OccluderMark markFor(const PrimitiveSource& primitive, const Placement& placement) {
+    if (placement.order == CornerOrder::kUnknown) {
+      return OccluderMark::kNever;
+    }
     const GltfFile::Node& node = document_.file.nodes[placement.node];
     const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::optional<bool> occluder = node.occluder ? node.occluder : mesh.occluder;
@@ -246,9 +256,7 @@ class ObjectAdder {
   }
 
   Status addTriangles(const PrimitiveSource& source, const Placement& placement) {
-    // A mirroring node turns the order of corners over. The node of a skinned mesh does not place it, and no
-    // renderer looks at the determinants of joints: the order stays, also where joints mirror.
-    const bool mirrored = placement.joints.empty() && determinant3(placement.world_from_node) < 0.0;
+    const bool mirrored = placement.order == CornerOrder::kReversed;
     ++object_;
     if (slots_.size() < source.positions->count()) {
       slots_.resize(source.positions->count());

@@ -3,16 +3,18 @@
 #include <optional>
 #include <span>
 
+#include "src/io/corner_order.h"
 #include "src/io/gltf/gltf_primitives.h"
 
 namespace sightline::io {
 
-// Where one object's vertices are placed.
+// Where one object's triangles are placed.
 struct Placement {
   Mat4 world_from_node;                     // or from an instance of its mesh
   std::span<const ActiveTarget> targets{};  // morph targets that displace its vertices
   std::span<const Mat4> joints{};           // of its skin, as Skins::open() makes them; empty: it has none
   std::optional<std::uint64_t> instance{};
+  CornerOrder order = CornerOrder::kKept;
   std::size_t node = 0;  // its number, in errors
 };
 
