@@ -224,12 +224,9 @@ class AssimpConverter {
       vertices_.push_back(vertex_of_[index]);
     }
     const PolygonTriangles cut = triangulator_.triangulate(corners_);
-    if (!cut.exact) {
-      builder_.setMark(OccluderMark::kNever);
-      ++findings_.inexact_polygons;
-    }
+    findings_.uncertain_polygons += cut.exact ? 0 : 1;
     for (const auto& [a, b, c] : cut.triangles) {
-      builder_.addTriangle(vertices_[a], vertices_[mirrored ? c : b], vertices_[mirrored ? b : c]);
+      builder_.addTriangle(vertices_[a], vertices_[mirrored ? c : b], vertices_[mirrored ? b : c], cut.exact);
     }
     return Success{};
   }
@@ -293,7 +290,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
     base::ByteWriter writer;
     writer.add(scene ? kSceneFollows : kErrorFollows);
     if (scene) {
-      writer.add(found.inexact_polygons);
+      writer.add(found.uncertain_polygons);
       writer.addBytes(sceneBytes(*scene));
     } else {
       writer.addBytes(std::as_bytes(std::span(scene.error().message)));
@@ -309,7 +306,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
     const std::span<const std::byte> text = reader.readBytes(reader.remaining());
     return failure("{}", std::string_view(reinterpret_cast<const char*>(text.data()), text.size()));
   }
-  findings.inexact_polygons = reader.read<std::uint64_t>();
+  findings.uncertain_polygons = reader.read<std::uint64_t>();
   std::optional<Scene> scene = sceneFromBytes(reader.readBytes(reader.remaining()));
   return scene ? Result<Scene>(std::move(*scene))
                : failure("{}: could not be read: its reader gave a broken answer", file);

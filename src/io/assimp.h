@@ -14,7 +14,7 @@ bool isAssimpExtension(const std::string& extension);
 
 // What both functions find beside the scene.
 struct AssimpFindings {
-  std::uint64_t inexact_polygons = 0;  // PolygonTriangles::exact; their objects are never occluders
+  std::uint64_t uncertain_polygons = 0;  // PolygonTriangles::exact; their objects are never occluders
 };
 
 // Reads the file in this process, which Assimp may bring down.

@@ -16,13 +16,12 @@ using namespace io;
 
 namespace {
 
-void noteInexact(const std::string& file, std::uint64_t polygons, std::vector<std::string>* notes) {
-  if (polygons > 0 && notes != nullptr) {
-    notes->push_back(fmt::format(
-        "{}: {} {} or {} too many corners, so the objects that have {} hide nothing; give triangles "
-        "instead",
-        oneLine(file), polygons, polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
-        polygons == 1 ? "has" : "have", polygons == 1 ? "it" : "them"));
+void noteUncertain(std::uint64_t polygons, Result<Scene>& scene) {
+  if (scene && polygons > 0) {
+    scene->notes.push_back(
+        fmt::format("{} {} or {} too many corners; {} nothing; give triangles instead", polygons,
+                    polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
+                    polygons == 1 ? "has" : "have", polygons == 1 ? "it hides" : "they hide"));
   }
 }
 
@@ -37,9 +36,8 @@ std::string named(const std::vector<std::string>& names) {
   return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
 }
 
-void noteMissingMaterials(const std::string& file, const ObjFindings& findings,
-                          std::vector<std::string>* notes) {
-  if (findings.faces_without_material == 0 || notes == nullptr) {
+void noteMissingMaterials(const ObjFindings& findings, Result<Scene>& scene) {
+  if (!scene || findings.faces_without_material == 0) {
     return;
   }
   const bool one = findings.faces_without_material == 1;
@@ -47,15 +45,15 @@ void noteMissingMaterials(const std::string& file, const ObjFindings& findings,
       findings.missing_libraries.empty()
           ? "name the .mtl file that defines them in a line mtllib, or define them"
           : fmt::format("put {} beside the file, or define them", named(findings.missing_libraries));
-  notes->push_back(oneLine(
-      fmt::format("{}: {} {} a material that no .mtl file defines ({}); it may be glass, so {} nothing; {}",
-                  file, findings.faces_without_material, one ? "face has" : "faces have",
+  scene->notes.push_back(oneLine(
+      fmt::format("{} {} a material that no .mtl file defines ({}); it may be glass, so {} nothing; {}",
+                  findings.faces_without_material, one ? "face has" : "faces have",
                   named(findings.missing_materials), one ? "it hides" : "they hide", what)));
 }
 
 }  // namespace
 
-Result<Scene> importScene(const std::string& file, std::vector<std::string>* notes) {
+Result<Scene> importScene(const std::string& file) {
   const std::filesystem::path path(file);
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -76,8 +74,8 @@ Result<Scene> importScene(const std::string& file, std::vector<std::string>* not
   if (extension == ".obj") {
     ObjFindings findings;
     Result<Scene> scene = importObj(*bytes, path.parent_path().string(), file, ImportLimits{}, findings);
-    noteInexact(file, findings.inexact_polygons, notes);
-    noteMissingMaterials(file, findings, notes);
+    noteUncertain(findings.uncertain_polygons, scene);
+    noteMissingMaterials(findings, scene);
     return scene;
   }
   if (extension.empty() || !isAssimpExtension(extension)) {
@@ -98,7 +96,7 @@ Result<Scene> importScene(const std::string& file, std::vector<std::string>* not
   std::string().swap(*bytes);  // frees it: Assimp reads the file itself, with the others that it names
   AssimpFindings findings;
   Result<Scene> scene = importAssimpInChild(file, file_bytes, ImportLimits{}, findings);
-  noteInexact(file, findings.inexact_polygons, notes);
+  noteUncertain(findings.uncertain_polygons, scene);
   if (scene && may_be_see_through) {
     for (Material& material : scene->materials) {
       material.opacity = Opacity::kBlended;

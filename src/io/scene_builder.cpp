@@ -1,6 +1,8 @@
 #include "src/io/scene_builder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sightline::io {
 namespace {
@@ -48,7 +50,23 @@ MaterialId SceneBuilder::addMaterial(Material material) {
   return MaterialId(scene_.materials.size() - 1);
 }
 
+// An object that would have no triangle keeps them.
+void SceneBuilder::addUncertain() {
+  if (uncertain_.empty()) {
+    return;
+  }
+  std::vector<std::uint32_t> corners = std::exchange(uncertain_, {});
+  if (scene_.objects.back().index_count > 0) {
+    beginObject(scene_.object_names.back() + "/uncertain", scene_.objects.back().material,
+                OccluderMark::kNever);
+  }
+  scene_.objects.back().mark = OccluderMark::kNever;
+  scene_.objects.back().index_count = static_cast<std::uint32_t>(corners.size());
+  scene_.indices.insert(scene_.indices.end(), corners.begin(), corners.end());
+}
+
 void SceneBuilder::beginObject(std::string name, MaterialId material, OccluderMark mark) {
+  addUncertain();
   Object object;
   object.first_index = static_cast<std::uint32_t>(scene_.indices.size());
   object.material = material;
@@ -62,12 +80,17 @@ std::uint32_t SceneBuilder::addVertex(const Vec3d& position_world) {
   return static_cast<std::uint32_t>(positions_world_.size() - 1);
 }
 
-void SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool certain) {
+  if (!certain) {
+    uncertain_.insert(uncertain_.end(), {a, b, c});
+    return;
+  }
   scene_.indices.insert(scene_.indices.end(), {a, b, c});
   scene_.objects.back().index_count += 3;
 }
 
 Scene SceneBuilder::finish() {
+  addUncertain();
   if (!positions_world_.empty()) {
     const Bounds bounds = boundsOf(positions_world_);
     scene_.origin = chooseOrigin(bounds);

@@ -43,11 +43,11 @@ class SceneBuilder {
   }
 
   void beginObject(std::string name, MaterialId material, OccluderMark mark);
-  // Sets the mark of the object that was begun last.
-  void setMark(OccluderMark mark) { scene_.objects.back().mark = mark; }
   // Returns the vertex's number for addTriangle. Precondition: inRange(position).
   std::uint32_t addVertex(const Vec3d& position_world);
-  void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  // certain: false for a triangle that may cover what the file does not show. Those of an object become
+  // another one after it, NAME/uncertain, which hides nothing.
+  void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool certain = true);
 
   static bool inRange(const Vec3d& position_world) {
     return maxComponent(abs(position_world)) <= kLargestCoordinate && isFinite(position_world);
@@ -62,11 +62,13 @@ class SceneBuilder {
   Scene finish();
 
  private:
-  std::uint64_t triangleCount() const { return scene_.indices.size() / 3; }
+  std::uint64_t triangleCount() const { return (scene_.indices.size() + uncertain_.size()) / 3; }
+  void addUncertain();
 
   ImportLimits limits_;
   Scene scene_;
   std::vector<Vec3d> positions_world_;
+  std::vector<std::uint32_t> uncertain_;  // corners of triangles of the last object
 };
 
 }  // namespace sightline::io

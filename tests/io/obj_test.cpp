@@ -107,10 +107,18 @@ TEST_F(Obj, PolygonsAreCoveredByTheirTrianglesAlone) {
   }
   EXPECT_EQ(area, 3.0);
   EXPECT_EQ(scene.objects.at(0).mark, OccluderMark::kAutomatic);
-  const Scene crossing = read(kSquare + "f 1 3 2 4\nf 1 2 3\n");
-  EXPECT_EQ(crossing.objects.at(0).mark, OccluderMark::kNever);
-  EXPECT_EQ(crossing.objects.at(0).bounds, (Box{{0, 0, 0}, {1, 1, 0}}));
-  EXPECT_EQ(findings_.inexact_polygons, 1u);
+  // What covers too much is set apart.
+  const Scene crossing = read("v 9 0 0\n" + kSquare + "usemtl x\nf 2 4 3 5\nf 2 3 4\no next\nf 2 3 1\n");
+  ASSERT_EQ(crossing.objects.size(), 3u);
+  EXPECT_EQ(crossing.objects[0].mark, OccluderMark::kAutomatic);
+  EXPECT_EQ(crossing.objects[0].triangleCount(), 1u);
+  EXPECT_EQ(crossing.object_names[1], crossing.object_names[0] + "/uncertain");
+  EXPECT_EQ(crossing.objects[1].mark, OccluderMark::kNever);
+  EXPECT_EQ(crossing.objects[1].bounds, (Box{{0, 0, 0}, {1, 1, 0}}));
+  EXPECT_EQ(crossing.objects[1].material, crossing.objects[0].material);
+  EXPECT_EQ(crossing.object_names[2], "next");
+  EXPECT_EQ(crossing.objects[2].mark, OccluderMark::kAutomatic);
+  EXPECT_EQ(findings_.uncertain_polygons, 1u);
 }
 
 TEST_F(Obj, LargeCoordinatesKeepMillimetres) {
@@ -216,17 +224,15 @@ TEST_F(Obj, MaterialsThatAreNotDefinedHideNothingAndAreNoted) {
   EXPECT_EQ(materialOf(kSquare + "f 1 2 3\n").opacity, Opacity::kOpaque);
   EXPECT_EQ(materialOf(kSquare + "usemtl\nf 1 2 3\n").opacity, Opacity::kOpaque);
 
-  std::vector<std::string> notes;
   const std::string file = folder_.write(
       "x.obj", "mtllib none.mtl a.mtl\n" + kSquare +
                    "usemtl m1\nf 1 2 3\nusemtl m2\nf 1 2 3\nusemtl wall\nf 1 2 3\nusemtl m1\nf 1 2 3\n");
-  ASSERT_TRUE(importScene(file, &notes));
-  ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(
-      notes[0],
-      file +
-          ": 3 faces have a material that no .mtl file defines (\"m1\" and \"m2\"); it may be glass, so they "
-          "hide nothing; put \"none.mtl\" beside the file, or define them");
+  const Result<Scene> scene = importScene(file);
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_EQ(scene->notes[0],
+            "3 faces have a material that no .mtl file defines (\"m1\" and \"m2\"); it may be glass, so they "
+            "hide nothing; put \"none.mtl\" beside the file, or define them");
 }
 
 TEST_F(Obj, BadStatementsAreNamedWithTheirLine) {

@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/scene/scene.h"
@@ -26,19 +25,19 @@ namespace sightline {
 // moving box of your own. docs/formats.md lists what else of a glTF file is read, and its extensions.
 //
 // Polygons are cut into triangles of their own corners that cover just the polygon, and whoever draws a
-// polygon whose corners do not lie in one plane must draw these triangles. Objects with polygons that cross
-// or overlap themselves, or that have more than 16,384 corners, are marked as no occluders.
+// polygon whose corners do not lie in one plane must draw these triangles. Polygons that cross or overlap
+// themselves, or that have more than 16,384 corners, become an object of their own, NAME/uncertain, which is
+// marked as no occluder.
 //
 // Objects of an .obj file are its o and g statements, divided where usemtl names another material. A material
 // that no .mtl file defines may be glass and counts as blended, which a note tells.
 //
-// notes: where it is given, lines about what the file leaves open are appended, each of which names the file
-// and what to do.
+// Scene::notes tell what the file leaves open, and what to do.
 //
 // Several threads may import at once, while others run. Assimp reads in a fork of this process, which has the
 // calling thread alone: locks that other threads hold at that moment stay locked there, and handlers of
 // pthread_atfork() run. A file that crashes or hangs Assimp is an error.
-Result<Scene> importScene(const std::string& file, std::vector<std::string>* notes = nullptr);
+Result<Scene> importScene(const std::string& file);
 
 // Reads a .glb, or the JSON text of a .gltf, from memory. Bytes of any origin are safe. Buffers in other
 // files are looked up under base_dir, and refused when it is empty.

@@ -110,12 +110,9 @@ class ObjConverter {
       vertices_.push_back(vertex_of_[index]);
     }
     const PolygonTriangles cut = triangulator_.triangulate(corners_);
-    if (!cut.exact) {
-      builder_.setMark(OccluderMark::kNever);
-      ++findings_.inexact_polygons;
-    }
+    findings_.uncertain_polygons += cut.exact ? 0 : 1;
     for (const auto& [a, b, c] : cut.triangles) {
-      builder_.addTriangle(vertices_[a], vertices_[b], vertices_[c]);
+      builder_.addTriangle(vertices_[a], vertices_[b], vertices_[c], cut.exact);
     }
   }
 

@@ -75,11 +75,7 @@ Result<CameraPath> defaultCameraPath(const std::string& scene_name, const Scene&
 }  // namespace
 
 Result<Scene> loadScene(const std::string& name) {
-  std::vector<std::string> notes;
-  Result<Scene> scene = isDemoUrl(name) ? makeDemoScene(name) : importScene(name, &notes);
-  for (const std::string& note : notes) {
-    printNote("{}", note);
-  }
+  Result<Scene> scene = isDemoUrl(name) ? makeDemoScene(name) : importScene(name);
   if (scene && scene->objects.empty()) {
     return Error{fmt::format("{}: there is nothing in it to draw; it has no triangles", name)};
   }
