@@ -95,7 +95,8 @@ bool HiddenLines::Impl::place(const FeatureLine& line, PageLine& placed) const {
   const Vec3d to = l.a * (1.0 - l.to) + l.b * l.to;
   placed.view = &view;
   placed.screen = {view.onScreen(from), view.onScreen(to)};
-  return from.z > 0.0 && to.z > 0.0 && placed.pageLength(l.from, l.to) > kNoLength * page_height;
+  const bool has_image = view.view().orthographic || (from.z > 0.0 && to.z > 0.0);
+  return has_image && placed.pageLength(l.from, l.to) > kNoLength * page_height;
 }
 
 // Sets `hidden` to the parts of the line that the occluders hide.

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/scene/usable_view.h"
+
 namespace sightline::drawing {
 namespace {
 
 // Sizes are in page units. On larger pages doubles do not hold thousandths of a unit.
 constexpr double kLargestPage = 1e15;
 constexpr double kSmallestPage = 1e-15;
+// Metres: in perspective, nothing nearer is drawn, for pictures and reciprocal depths grow without bounds
+// towards the eye. A metre from the origin, coordinates of single precision are 2^-24 m apart.
+constexpr double kNearest = 0x1p-40;
 
 bool isSize(double value) {
   return std::isfinite(value) && value > 0.0;
@@ -22,14 +27,23 @@ bool isPageSide(double value) {
   return value >= kSmallestPage && value <= kLargestPage;
 }
 
+bool isDirection(Vec3d axis) {
+  return scene::makeUnit(axis);
+}
+
+double nearOf(const View& view) {
+  return view.orthographic ? view.z_near : std::max(view.z_near, kNearest);
+}
+
 }  // namespace
 
 bool isDrawable(const View& view, double page_height) {
   const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
-         isSize(view.z_near) && view.z_near < view.z_far && isShift(view.shift_x) && isShift(view.shift_y) &&
-         isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
+         std::isfinite(view.z_near) && view.z_near >= 0.0 && nearOf(view) < view.z_far &&
+         isShift(view.shift_x) && isShift(view.shift_y) && isFinite(view.eye) && isDirection(view.right) &&
+         isDirection(view.up) && isDirection(view.forward);
 }
 
 bool narrow(double at_0, double at_1, double& from, double& to) {
@@ -50,6 +64,11 @@ bool narrow(double at_0, double at_1, double& from, double& to) {
 
 LineView::LineView(const View& view, double page_height)
     : view_(view), drawable_(isDrawable(view, page_height)) {
+  // The basis may be left-handed: the picture is mirrored then.
+  scene::makeUnit(view_.right);
+  scene::makeUnit(view_.up);
+  scene::makeUnit(view_.forward);
+  view_.z_near = nearOf(view);
   const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   const double half_width = half_height * view.aspect;
   left_ = half_width * (view.shift_x - 1.0);

@@ -13,8 +13,8 @@ struct ScreenPoint {
   double reciprocal_depth = 0.0;  // greater is nearer: 1 / depth, or -depth
 };
 
-// Whether a view can be drawn on a page of this height: sizes and directions are finite, sizes above zero,
-// and both sides of the page between 1e-15 and 1e15 units.
+// Whether a view can be drawn on a page of this height: sizes and directions are finite and not zero, and
+// both sides of the page are between 1e-15 and 1e15 units.
 bool isDrawable(const View& view, double page_height);
 
 class LineView {
@@ -22,6 +22,7 @@ class LineView {
   LineView() = default;  // a view that is not drawable and shows nothing
   LineView(const View& view, double page_height);
 
+  // With axes of unit length, and with z_near > 0 in perspective.
   const View& view() const { return view_; }
   bool drawable() const { return drawable_; }
 

@@ -4,10 +4,15 @@
 
 namespace sightline::drawing {
 
-TriangleSides::TriangleSides(const View& view)
-    : orthographic_(view.orthographic),
-      eye_(view.eye),
-      sight_(view.orthographic ? scene::sightDirection(view) : Vec3d()) {}
+TriangleSides::TriangleSides(const View& view) : orthographic_(view.orthographic), eye_(view.eye) {
+  if (orthographic_) {
+    View unit = view;
+    scene::makeUnit(unit.right);
+    scene::makeUnit(unit.up);
+    scene::makeUnit(unit.forward);
+    sight_ = scene::sightDirection(unit);
+  }
+}
 
 // The sign of dot(n, v) with n = (b - a) x (c - a) and v the vector from the eye to a. The differences b - a
 // and a - eye are off by 2^-53 of their size each; six products and five sums follow. So the value is off by

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "src/math/box_distance.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 namespace {
@@ -26,6 +27,12 @@ bool insideFrustum(const Frustum& frustum, const Box& box) {
   return classify(frustum, box, cut) != FrustumSide::kOutside;
 }
 
+Vec3d unitForward(const View& view) {
+  Vec3d forward = view.forward;
+  scene::makeUnit(forward);
+  return forward;
+}
+
 // For a body, the sides of the box around it count.
 double areaAngle(const Box& box, const View& view, AreaAngleDirection direction) {
   const Vec3d to_center = center(box) - view.eye;
@@ -34,7 +41,7 @@ double areaAngle(const Box& box, const View& view, AreaAngleDirection direction)
     return 0.0;
   }
   const bool along_view = view.orthographic || direction == AreaAngleDirection::kView;
-  const Vec3d v = abs(along_view ? view.forward : to_center / std::sqrt(squared));
+  const Vec3d v = abs(along_view ? unitForward(view) : to_center / std::sqrt(squared));
   const Vec3d size = Vec3d(box.max) - Vec3d(box.min);
   return (size.y * size.z * v.x + size.x * size.z * v.y + size.x * size.y * v.z) / squared;
 }
@@ -44,7 +51,7 @@ double areaAngle(const Box& box, const View& view, AreaAngleDirection direction)
 double areaAngle(const Occluder& occluder, const View& view, AreaAngleDirection direction) {
   const Vec3d to_center = Vec3d(occluder.centroid) - view.eye;
   const double facing =
-      view.orthographic ? dot(occluder.plane.normal, view.forward) : -occluder.plane.evaluate(view.eye);
+      view.orthographic ? dot(occluder.plane.normal, unitForward(view)) : -occluder.plane.evaluate(view.eye);
   double sign = -1.0;
   if (facing >= 0.0) {
     if (!occluder.double_sided || facing == 0.0) {
@@ -54,13 +61,13 @@ double areaAngle(const Occluder& occluder, const View& view, AreaAngleDirection 
   }
   const double area = occluder.area;
   if (view.orthographic) {
-    return std::max(0.0, sign * area * dot(occluder.plane.normal, view.forward));
+    return std::max(0.0, sign * area * facing);
   }
   const double squared = dot(to_center, to_center);
   if (!(squared > 0.0)) {
     return 0.0;
   }
-  const Vec3d v = direction == AreaAngleDirection::kView ? view.forward : to_center / std::sqrt(squared);
+  const Vec3d v = direction == AreaAngleDirection::kView ? unitForward(view) : to_center / std::sqrt(squared);
   return std::max(0.0, sign * area * dot(occluder.plane.normal, v) / squared);
 }
 

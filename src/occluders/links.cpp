@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -427,7 +428,12 @@ class Linker {
     }
   }
 
+  // At a mesh edge of too many polygons none has neighbours, so that there are no more of them in all than a
+  // multiple of the mesh edges. This is as safe as if the polygons had edges of their own there, which do not
+  // quite coincide: each of them is open and inset (docs/conservative.md).
   void writeNeighbours() {
+    static_assert(kMaxMeshEdges * (kMaxPolygonsAtEdge - 1) <=
+                  std::numeric_limits<decltype(OccluderEdge::neighbour_count)>::max());
     LargeVector<std::uint8_t> joins(polygons_.size());  // by place
     constexpr std::uint32_t kAhead = 16;                // occluders lie by rank, too
     base::forEach(parallel_for_, polygons_.size(), [&](std::uint32_t i) {
@@ -440,6 +446,9 @@ class Linker {
     base::groupIntoRows(parallel_for_, set_.edges.size(), by_vertex_.count(), first, set_.neighbours,
                         [&](std::size_t begin, std::size_t end, auto&& pair) {
                           forEachMeshEdge(begin, end, [&](std::span<const Use> users) {
+                            if (users.size() > kMaxPolygonsAtEdge) {
+                              return;
+                            }
                             for (const Use& a : users) {
                               const std::uint32_t edge = edge_of_use_[a.use], place = place_of_edge_[edge];
                               if (kind_[edge] == EdgeKind::kNeverWatertight) {
@@ -460,7 +469,7 @@ class Linker {
       const std::uint32_t count = first[e + 1] - first[e];
       if (count > 0) {
         set_.edges[e].first_neighbour = first[e];
-        set_.edges[e].neighbour_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
+        set_.edges[e].neighbour_count = static_cast<std::uint16_t>(count);
         std::sort(set_.neighbours.begin() + first[e], set_.neighbours.begin() + first[e + 1],
                   [](const EdgeNeighbour& a, const EdgeNeighbour& b) {
                     return std::tie(a.mesh_edge, a.occluder) < std::tie(b.mesh_edge, b.occluder);

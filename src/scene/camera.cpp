@@ -15,11 +15,19 @@ namespace {
 // itself.
 constexpr double kPerpendicular = 0x1p-50;
 
+// Unit vector of any but the zero vector, which stays zero. Squares of the longest and of the shortest
+// vectors are beyond double precision, so these are scaled before.
+Vec3d unitOf(const Vec3d& direction) {
+  const double largest = maxComponent(abs(direction));
+  const bool ordinary = largest > 0x1p-400 && largest < 0x1p400;
+  return normalized(ordinary || !(largest > 0.0) ? direction : direction / largest);
+}
+
 }  // namespace
 
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
-  view.forward = normalized(forward);
-  Vec3d right = cross(view.forward, normalized(up_hint));
+  view.forward = unitOf(forward);
+  Vec3d right = cross(view.forward, unitOf(up_hint));
   if (length(right) < 1e-9) {
     // The view direction is parallel to the hint, so any perpendicular direction is used.
     const Vec3d other = std::abs(view.forward.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 0, 1);

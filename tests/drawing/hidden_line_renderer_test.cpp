@@ -527,5 +527,35 @@ TEST(HiddenLineRenderer, TellsOfItsProgressUpToTheEnd) {
   }
 }
 
+TEST(HiddenLineRenderer, DrawsTheSameHoweverNearTheNearPlaneIs) {
+  const Set set = randomSet(3, 12);
+  for (const bool orthographic : {false, true}) {
+    View view = viewFromFront(orthographic);
+    const std::uint64_t plotted = countStrokes(set.plot(view)), painted = countStrokes(set.paint(view));
+    ASSERT_GT(plotted, 20u);
+    view.z_near = 0.0;
+    EXPECT_EQ(countStrokes(set.plot(view)), plotted);
+    EXPECT_EQ(countStrokes(set.paint(view)), painted);
+  }
+}
+
+TEST(HiddenLineRenderer, DrawsTheSameWithAxesOfOtherLengths) {
+  const Set set = randomSet(4, 12);
+  for (const bool orthographic : {false, true}) {
+    View view = viewOfACorner();
+    view.orthographic = orthographic;
+    const Drawing expected = set.plot(view);
+    ASSERT_GT(countStrokes(expected), 20u);
+    view.right = view.right * 3.0;
+    view.up = view.up * 0.25;
+    view.forward = view.forward * 1e170;
+    const Drawing drawing = set.plot(view);
+    ASSERT_EQ(countStrokes(drawing), countStrokes(expected));
+    for (std::uint32_t id = 0; id < 12; ++id) {
+      EXPECT_NEAR(lengthOfAll(strokesOf(drawing, id)), lengthOfAll(strokesOf(expected, id)), 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline

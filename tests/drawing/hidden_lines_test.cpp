@@ -293,13 +293,16 @@ TEST(HiddenLines, TakeWhatIsNotFiniteForNothing) {
   EXPECT_TRUE(sketch.pieces(squareView(), sketch.line({-1, nan, -8}, {1, 1, -8})).empty());
   EXPECT_TRUE(sketch.pieces(squareView(), sketch.line({-1, 0, -8}, {1, infinity, -8})).empty());
   EXPECT_TRUE(sketch.pieces(squareView(), {5, 1000000, LineKind::kCrease}).empty());
-  std::vector<View> views(6, squareView());
+  std::vector<View> views(8, squareView());
   views[0].eye.x = nan;
-  views[1].z_near = 0.0;
+  views[1].z_near = -1e-9;
   views[2].z_far = views[2].z_near;
   views[3].tan_half_fovy = infinity;
   views[4].aspect = 0.0;
   views[5].forward.y = nan;
+  views[6].right = {};
+  views[7].z_near = 0.0;
+  views[7].z_far = 1e-20;
   for (const View& view : views) {
     EXPECT_TRUE(sketch.pieces(view, line).empty());
   }
@@ -311,6 +314,60 @@ TEST(HiddenLines, TakeWhatIsNotFiniteForNothing) {
   hidden.setView(sketch.scene.view(), squareView(), kPage);
   hidden.visiblePieces({&line, 1}, {&nothing, 1}, pieces);
   EXPECT_EQ(pieces.size(), 1u);
+}
+
+TEST(HiddenLines, BeginAtTheEyeIfTheNearDistanceIsZero) {
+  Sketch sketch;
+  sketch.add(wall(-1, 1, 4));
+  // The last line but one lies in the plane of the eye, the last one comes from behind it, below the eye.
+  const FeatureLine lines[] = {sketch.line({-3, 0, -8}, {3, 0, -8}),
+                               sketch.line({-0.25f, 0.125f, -1}, {0.25f, 0.125f, -1}),
+                               sketch.line({-4, -3, 0}, {4, -3, 0}), sketch.line({-1, -1, 3}, {1, -1, -3})};
+  for (const bool orthographic : {false, true}) {
+    View view = orthographic ? flatView(8) : squareView();
+    for (const double z_near : {0.0, 1e-300}) {
+      view.z_near = z_near;
+      const auto sharesOf = [&](const FeatureLine& line) { return sketch.pieces(view, line); };
+      view.z_near = 0.01;
+      const std::vector<LinePiece> behind = sharesOf(lines[0]), before = sharesOf(lines[1]);
+      view.z_near = z_near;
+      ASSERT_EQ(sharesOf(lines[0]).size(), 2u);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(sharesOf(lines[0])[i].from, behind[i].from);
+        EXPECT_EQ(sharesOf(lines[0])[i].to, behind[i].to);
+      }
+      expectShares(before, {{0, 1}});
+      expectShares(sharesOf(lines[1]), {{0, 1}});
+      EXPECT_EQ(sharesOf(lines[2]).size(), orthographic && z_near == 0.0 ? 1u : 0u);
+      // From the lower border of the picture on, or from the plane of the eye on.
+      expectShares(sharesOf(lines[3]), {{orthographic ? 0.5 : 4.0 / 6.0, 1.0}});
+    }
+  }
+}
+
+TEST(HiddenLines, DoNotDependOnTheLengthOfAxes) {
+  Sketch sketch;
+  sketch.add(wall(-1, 1, 4));
+  const FeatureLine line = sketch.line({-3, 0.5, -8}, {3, -0.5, -8});
+  for (const bool orthographic : {false, true}) {
+    const View view = orthographic ? flatView(8) : squareView();
+    const std::vector<LinePiece> expected = sketch.pieces(view, line);
+    ASSERT_EQ(expected.size(), 2u);
+    for (const double factor : {2.0, 100.0, 1e-200, 1e200}) {
+      View scaled = view;
+      scaled.right = view.right * factor;
+      scaled.up = view.up * (0.5 * factor);
+      for (const double depth_factor : {1.0, factor}) {
+        scaled.forward = view.forward * depth_factor;
+        const std::vector<LinePiece> pieces = sketch.pieces(scaled, line);
+        ASSERT_EQ(pieces.size(), 2u) << factor;
+        for (std::size_t i = 0; i < 2; ++i) {
+          EXPECT_EQ(pieces[i].from, expected[i].from) << factor;
+          EXPECT_EQ(pieces[i].to, expected[i].to) << factor;
+        }
+      }
+    }
+  }
 }
 
 TEST(HiddenLines, LookAtNothingThatLiesBesideOrBehind) {

@@ -320,11 +320,17 @@ TEST(Outline, RefusesPagesAndViewsWithoutSize) {
     EXPECT_FALSE(isDrawable(view, height)) << height;
   }
   for (const auto change : {+[](View& v) { v.aspect = 0; }, +[](View& v) { v.aspect = kNan; },
-                            +[](View& v) { v.tan_half_fovy = kNan; }, +[](View& v) { v.z_near = 0; },
-                            +[](View& v) { v.z_far = v.z_near; }, +[](View& v) { v.eye.x = kNan; }}) {
+                            +[](View& v) { v.tan_half_fovy = kNan; }, +[](View& v) { v.z_near = -1; },
+                            +[](View& v) { v.z_far = v.z_near; }, +[](View& v) { v.eye.x = kNan; },
+                            +[](View& v) { v.up = {}; }}) {
     View changed = view;
     change(changed);
     EXPECT_FALSE(isDrawable(changed, kHeight));
+  }
+  for (const bool orthographic : {false, true}) {
+    View from_the_eye = viewFromFront(orthographic);
+    from_the_eye.z_near = 0.0;
+    EXPECT_TRUE(isDrawable(from_the_eye, kHeight));
   }
 }
 

@@ -88,6 +88,19 @@ TEST(AreaAngle, OfABackIsNoneUnlessBothSidesHide) {
   }
 }
 
+TEST(AreaAngle, DoesNotDependOnTheLengthOfAxes) {
+  const OccluderSet set = setOf({square({1, 1, -5}, 2.0)});
+  for (const bool orthographic : {false, true}) {
+    View view = frontView();
+    view.orthographic = orthographic;
+    for (const AreaAngleDirection direction : kDirections) {
+      View scaled = view;
+      scaled.forward = view.forward * 3.0;
+      EXPECT_EQ(areaAngle(set.occluders[0], scaled, direction), areaAngle(set.occluders[0], view, direction));
+    }
+  }
+}
+
 TEST(AreaAngle, WithTheEyeInThePlaneIsNone) {
   const std::vector<Vec3f> edge_on{{-1, 0, -2}, {1, 0, -2}, {1, 0, -9}, {-1, 0, -9}};
   for (const AreaAngleDirection direction : kDirections) {

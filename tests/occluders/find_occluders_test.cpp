@@ -670,6 +670,40 @@ TEST(MakeOccluders, MakesSharedEdgesOfEqualEndsWatertight) {
   EXPECT_EQ(set.neighbours.size(), 2u);
 }
 
+// Walls around one edge, each of which has a second edge with a wall of its own beyond it.
+OccluderSet wallsAroundOneEdge(std::size_t count) {
+  std::vector<std::array<Vec3f, 4>> corners;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = 6.283 * static_cast<double>(i) / static_cast<double>(count);
+    const auto x = static_cast<float>(std::cos(angle)), y = static_cast<float>(std::sin(angle));
+    corners.push_back({Vec3f{0, 0, 0}, {0, 0, 1}, {x, y, 1}, {x, y, 0}});
+    corners.push_back({Vec3f{x, y, 0}, {x, y, 1}, {3 * x, 2 * y, 1}, {3 * x, 2 * y, 0}});
+  }
+  std::vector<OccluderPolygon> polygons;
+  for (const std::array<Vec3f, 4>& of : corners) {
+    polygons.push_back({of, true, ObjectId(0u)});
+  }
+  return makeOccluders(polygons);
+}
+
+TEST(MakeOccluders, LeavesAnEdgeOfTooManyPolygonsOpen) {
+  // The limit is 64 polygons: all of them have neighbours there, or none has. Other edges are as they were.
+  for (const std::size_t count : {2u, 63u, 64u, 65u, 200u}) {
+    const OccluderSet set = wallsAroundOneEdge(count);
+    ASSERT_EQ(set.occluders.size(), 2 * count);
+    EXPECT_EQ(set.neighbours.size(), 2 * count + (count <= 64 ? count * (count - 1) : 0)) << count;
+    EXPECT_EQ(whatIsWrongWithLinks(set), "") << count;
+  }
+}
+
+TEST(MakeOccluders, TakesManyPolygonsInOnePlace) {
+  // If each were the neighbour of all others, this would take more memory than there is.
+  const std::vector<Vec3f> wall{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const OccluderSet set = makeOccluders(std::vector<OccluderPolygon>(100000, {wall, true, ObjectId(0u)}));
+  EXPECT_EQ(set.occluders.size(), 100000u);
+  EXPECT_TRUE(set.neighbours.empty());
+}
+
 TEST(MakeOccluders, NeverCoversMoreThanTheCallersPolygon) {
   // Random loops, most of them neither convex nor simple: what is accepted is what was given, and convex.
   int accepted = 0;

@@ -64,6 +64,27 @@ TEST(Camera, OrientationIsOrthonormalForAnyDirection) {
   }
 }
 
+TEST(Camera, OrientationDoesNotDependOnTheLengthOfTheDirection) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d forward = normalized(randomVector(random, 5.0)), hint = randomVector(random, 5.0);
+    View expected;
+    setOrientation(expected, forward, hint);
+    for (const double size : {1e-310, 1e-300, 1e-160, 1e-100, 1e100, 1e154, 1e300}) {
+      for (const double hint_size : {1.0, size}) {
+        View view;
+        setOrientation(view, forward * size, hint * hint_size);
+        EXPECT_TRUE(validate(view)) << size;
+        EXPECT_LT(length(view.forward - expected.forward), 1e-12) << size;
+        EXPECT_LT(length(view.up - expected.up), 1e-9) << size;
+      }
+    }
+    CameraPath path;
+    path.frames = {{.forward = forward * 1e-300, .up = hint * 1e300}};
+    EXPECT_LT(length(path.view(0, {}).right - expected.right), 1e-9);
+  }
+}
+
 TEST(Camera, OrientationSurvivesLookingAlongTheHint) {
   for (const Vec3d& axis : {Vec3d(0, 1, 0), Vec3d(0, -1, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 3)}) {
     View view;

@@ -64,8 +64,9 @@ struct DrawingSettings {
 
 // Draws a scene, one view after another. Part i of an order is object i. Objects that show nothing on the
 // page are left out. Lines of an object are joined to strokes at its corners; strokes and outlines are
-// simplified within about 1 / 200,000 of the page's height. The drawing is empty if the view or the page has
-// no valid size (pages: 1e-15 to 1e15 units on each side). For one thread at a time.
+// simplified within about 1 / 200,000 of the page's height. A view whose z_near is 0 shows all that is before
+// the eye, in perspective from a depth of 2^-40 m on. The drawing is empty if the view or the page has no
+// valid size (pages: 1e-15 to 1e15 units on each side). For one thread at a time.
 class HiddenLineRenderer {
  public:
   explicit HiddenLineRenderer(const SceneView& scene);  // reads the triangles; positions may change later

@@ -63,7 +63,8 @@ class FeatureEdges {
 
   // Replaces `lines` by the object's lines as seen from the view's eye, ascending by (a, b). Lines that are
   // hidden or outside the view are included; edges without length are not. scene must have the constructor's
-  // objects and indices. Orthographic views look along forward, wherever the eye is.
+  // objects and indices. Orthographic views look at right angles to right and up, which is along forward but
+  // for the rounding of the axes, wherever the eye is.
   void select(const SceneView& scene, ObjectId object, const View& view, const FeatureSettings& settings,
               std::vector<FeatureLine>& lines) const;
 

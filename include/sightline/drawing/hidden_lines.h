@@ -45,8 +45,10 @@ struct HiddenLineStats {
 //   - Pieces beside hidden stretches are left out if they are shorter than 2^-18 of the page's height; hidden
 //     stretches shorter than that do not divide a piece.
 // Triangles with the eye in their plane, without area, or with corners that are not finite hide nothing.
-// Lines with ends that are not finite give no pieces, nor do lines of an invalid view: z_near is not
-// positive, z_far is not beyond it, there is no size, or a number other than z_far is not finite.
+// Axes of other lengths are normalised. A perspective view whose z_near is below 2^-40 m begins at that
+// depth. Lines with ends that are not finite give no pieces, nor do lines of an invalid view: z_near is
+// negative, z_far is not beyond it, there is no size, an axis is zero, or a number other than z_far is not
+// finite.
 class HiddenLines {
  public:
   HiddenLines();

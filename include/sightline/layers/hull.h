@@ -51,6 +51,9 @@ struct ConvexHull {
 };
 
 // Builds the convex hull; vertices are in the order of the points. Solids are made by Qhull.
+// The time grows faster than the number of vertices does, and fastest where one face has many of them: of a
+// sphere, 4,000 vertices take 0.15 s and 8,000 0.5 s; of a cylinder, half of them around each end, 0.7 s and
+// 4 s.
 // Errors: no points, a coordinate that is not finite or is beyond 1e100, more than 2^24 points, or no memory.
 // Source: Barber, Dobkin, Huhdanpaa. The Quickhull algorithm for convex hulls. ACM TOMS 1996.
 Result<ConvexHull> buildHull(std::span<const Vec3d> points);

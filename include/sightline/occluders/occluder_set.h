@@ -46,7 +46,8 @@ struct OccluderEdge {
   std::uint32_t first_edge_vertex = 0;
 };
 
-// Another occluder that has one of an edge's mesh edges in its own boundary.
+// Another occluder that has one of an edge's mesh edges in its own boundary. A mesh edge of more than 64
+// occluders has none.
 struct EdgeNeighbour {
   OccluderId occluder{};
   std::uint32_t mesh_edge = 0;  // number of the mesh edge within the edge, from 0
@@ -190,9 +191,10 @@ struct OccluderPolygon {
 
 // Makes a set of the caller's polygons, for scenes that change or come without meshes. Edges with equal end
 // points are watertight between their polygons, and so are parts of edges, up to 64 of one, that end at
-// corners of others which lie on them exactly. The time grows with the number of edges, however they lie:
-// 16,000 long strips side by side, aslant, take 0.08 s. Polygons without area, and those that deviate from
-// convex or planar by more than rounding, are left out, which is conservative: they hide nothing.
+// corners of others which lie on them exactly. An edge of more than 64 polygons is open in all of them. The
+// time grows with the number of edges, however they lie: 16,000 long strips side by side, aslant, take
+// 0.08 s. Polygons without area, and those that deviate from convex or planar by more than rounding, are left
+// out, which is conservative: they hide nothing.
 OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons);
 
 // The occluders as bytes, to be read again instead of found: on a machine of the same kind, by a program of

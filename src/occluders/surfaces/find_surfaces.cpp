@@ -31,6 +31,19 @@ void makeUnique(const ParallelFor& parallel_for, base::Rows<std::uint32_t>& rows
   });
 }
 
+// Calls visit(whole, its uses) for each whole with clusters that end at a chain. whole_of: by cluster,
+// ascending, as the uses are.
+template <typename Visit>
+void forEachWhole(std::span<const ChainUse> uses, std::span<const std::uint32_t> whole_of, Visit&& visit) {
+  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+    const std::uint32_t whole = whole_of[uses[i].cluster];
+    while (end < uses.size() && whole_of[uses[end].cluster] == whole) {
+      ++end;
+    }
+    visit(whole, uses.subspan(i, end - i));
+  }
+}
+
 // Lists the clusters that adjoin each part. part_of: by cluster.
 void findAdjoining(std::span<const std::uint32_t> part_of, const ParallelFor& parallel_for, SurfaceSet& set) {
   base::Rows<std::uint32_t> clusters;  // by part
@@ -38,35 +51,16 @@ void findAdjoining(std::span<const std::uint32_t> part_of, const ParallelFor& pa
                       [&](std::size_t begin, std::size_t end, auto&& pair) {
                         for (std::size_t i = begin; i < end; ++i) {
                           const std::span<const ChainUse> uses = set.usesOf(set.chains[i]);
-                          for (const ChainUse& a : uses) {
+                          forEachWhole(uses, part_of, [&](std::uint32_t part, std::span<const ChainUse>) {
                             for (const ChainUse& b : uses) {
-                              if (part_of[a.cluster] != part_of[b.cluster]) {
-                                pair(part_of[a.cluster], b.cluster);
+                              if (part_of[b.cluster] != part) {
+                                pair(part, b.cluster);
                               }
                             }
-                          }
+                          });
                         }
                       });
   makeUnique(parallel_for, clusters, set.first_adjoining, set.adjoining);
-}
-
-// Calls visit(whole, value) for each whole that ends at a chain. whole_of: by cluster.
-template <typename Visit>
-void visitWholes(std::span<const ChainUse> uses, std::span<const std::uint32_t> whole_of, Visit&& visit) {
-  for (std::size_t i = 0; i < uses.size(); ++i) {
-    const std::uint32_t whole = whole_of[uses[i].cluster];
-    std::int32_t sum = 0;
-    bool first = true;
-    for (std::size_t k = 0; k < uses.size(); ++k) {
-      if (whole_of[uses[k].cluster] == whole) {
-        sum += uses[k].value;
-        first = first && k >= i;
-      }
-    }
-    if (first && sum != 0) {
-      visit(whole, sum);
-    }
-  }
 }
 
 // Lists the chains at which wholes end: by whole, of so many, ascending. whole_of: by cluster.
@@ -76,10 +70,16 @@ void listBoundaries(std::span<const std::uint32_t> whole_of, std::size_t wholes,
   base::groupIntoRows(parallel_for, wholes, set.chains.size(), first, chains,
                       [&](std::size_t begin, std::size_t end, auto&& pair) {
                         for (std::size_t i = begin; i < end; ++i) {
-                          visitWholes(set.usesOf(set.chains[i]), whole_of,
-                                      [&](std::uint32_t whole, std::int32_t value) {
-                                        pair(whole, PatchChain{static_cast<std::uint32_t>(i), value});
-                                      });
+                          forEachWhole(set.usesOf(set.chains[i]), whole_of,
+                                       [&](std::uint32_t whole, std::span<const ChainUse> uses) {
+                                         std::int32_t value = 0;
+                                         for (const ChainUse& use : uses) {
+                                           value += use.value;
+                                         }
+                                         if (value != 0) {
+                                           pair(whole, PatchChain{static_cast<std::uint32_t>(i), value});
+                                         }
+                                       });
                         }
                       });
 }

@@ -22,12 +22,77 @@ struct BoundaryEdge {
   std::uint32_t first_use, use_count;
 };
 
+// What clusters end at the crowded edges of a mesh: the sums are made once for each edge, for each triangle
+// at it would ask for them again.
+class CrowdedUses {
+ public:
+  CrowdedUses(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
+              const ParallelFor& parallel_for)
+      : uses_(base::unsetVector<ChainUse>(mesh.crowded.items().size())), edges_(mesh.crowded.count()) {
+    base::forEach(parallel_for, edges_.size(), [&](std::uint32_t edge) {
+      const std::span<const Side> sides = mesh.crowded[edge];
+      edges_[edge].first = static_cast<std::size_t>(sides.data() - mesh.crowded.items().data());
+      sumUp(sides, cluster_of, edges_[edge]);
+    });
+  }
+
+  // The uses of an edge, if a triangle is the first one there of the first cluster that ends at it: all
+  // others are told that there are none. They count in the direction in which the first one is positive.
+  std::span<const ChainUse> usesFor(std::uint32_t triangle, std::uint32_t edge) const {
+    const Edge& of = edges_[edge];
+    return triangle == of.triangle ? std::span(uses_).subspan(of.first, of.count)
+                                   : std::span<const ChainUse>();
+  }
+  // Whether that direction is from the edge's higher vertex to its lower one.
+  bool isReversed(std::uint32_t edge) const { return edges_[edge].reversed; }
+
+ private:
+  struct Edge {
+    std::size_t first = 0;    // in uses_, where there is room for one of each side
+    std::uint32_t count = 0;  // of uses
+    std::uint32_t triangle = SurfaceMesh::kNone;
+    bool reversed = false;
+  };
+
+  void sumUp(std::span<const Side> sides, std::span<const std::uint32_t> cluster_of, Edge& edge) {
+    const std::span<ChainUse> uses = std::span(uses_).subspan(edge.first, sides.size());
+    std::transform(sides.begin(), sides.end(), uses.begin(), [&](Side side) {
+      return ChainUse{cluster_of[side.triangle()], side.value()};
+    });
+    std::sort(uses.begin(), uses.end(),
+              [](const ChainUse& a, const ChainUse& b) { return a.cluster < b.cluster; });
+    for (std::size_t i = 0, next = 0; i < uses.size(); i = next) {
+      ChainUse sum{uses[i].cluster, 0};
+      for (; next < uses.size() && uses[next].cluster == sum.cluster; ++next) {
+        sum.value += uses[next].value;
+      }
+      if (sum.value != 0) {
+        uses[edge.count++] = sum;
+      }
+    }
+    if (edge.count == 0) {
+      return;
+    }
+    edge.triangle = std::find_if(sides.begin(), sides.end(), [&](Side side) {
+                      return cluster_of[side.triangle()] == uses[0].cluster;
+                    })->triangle();
+    edge.reversed = uses[0].value < 0;
+    for (ChainUse& use : uses.first(edge.reversed ? edge.count : 0)) {
+      use.value = -use.value;
+    }
+  }
+
+  LargeVector<ChainUse> uses_;
+  LargeVector<Edge> edges_;  // by number in SurfaceMesh::crowded
+};
+
 // The edges at which one cluster ends, and is the first that does. A use is how the triangles of a cluster
 // run along an edge, all in all; uses are ascending by cluster.
 class ClusterBoundary {
  public:
-  ClusterBoundary(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of)
-      : mesh_(mesh), cluster_of_(cluster_of) {}
+  ClusterBoundary(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
+                  const CrowdedUses& crowded)
+      : mesh_(mesh), cluster_of_(cluster_of), crowded_(crowded) {}
 
   // triangles: all of one cluster.
   void find(std::uint32_t cluster, std::span<const std::uint32_t> triangles) {
@@ -40,7 +105,7 @@ class ClusterBoundary {
           uses_.push_back({cluster, 1});
           addEdge(corner, 1);
         } else if (beyond >= SurfaceMesh::kCrowded) {
-          addCrowded(cluster, corner, mesh_.crowded[beyond - SurfaceMesh::kCrowded]);
+          addCrowded(corner, beyond - SurfaceMesh::kCrowded);
         } else if (const std::uint32_t other = cluster_of_[beyond / 3]; other > cluster) {
           uses_.push_back({cluster, 1});
           uses_.push_back({other, -1});
@@ -62,44 +127,24 @@ class ClusterBoundary {
                       static_cast<std::uint32_t>(uses_.size()) - use_count, use_count});
   }
 
-  // Sums up how the triangles of each cluster run. An edge is added where its first side of the cluster is.
-  void addCrowded(std::uint32_t cluster, Corner corner, std::span<const Side> sides) {
-    const auto own = std::find_if(sides.begin(), sides.end(),
-                                  [&](Side side) { return cluster_of_[side.triangle()] == cluster; });
-    if (own->corner() != corner) {
+  void addCrowded(Corner corner, std::uint32_t edge) {
+    const std::span<const ChainUse> uses = crowded_.usesFor(corner / 3, edge);
+    if (uses.empty()) {
       return;
     }
-    sums_.clear();
-    for (const Side side : sides) {
-      const std::uint32_t other = cluster_of_[side.triangle()];
-      auto at =
-          std::find_if(sums_.begin(), sums_.end(), [&](const ChainUse& use) { return use.cluster == other; });
-      if (at == sums_.end()) {
-        at = sums_.insert(sums_.end(), {other, 0});
-      }
-      at->value += side.value() * own->value();
-    }
-    std::erase_if(sums_, [](const ChainUse& use) { return use.value == 0; });
-    std::sort(sums_.begin(), sums_.end(),
-              [](const ChainUse& a, const ChainUse& b) { return a.cluster < b.cluster; });
-    if (sums_.empty() || sums_[0].cluster != cluster) {
-      return;
-    }
-    uses_.insert(uses_.end(), sums_.begin(), sums_.end());
-    addEdge(corner, static_cast<std::uint32_t>(sums_.size()));
-    // So far the values count in the direction of the corner.
-    if (sums_[0].value < 0) {
-      std::swap(edges_.back().from, edges_.back().to);
-      std::for_each(uses_.end() - edges_.back().use_count, uses_.end(),
-                    [](ChainUse& use) { use.value = -use.value; });
+    uses_.insert(uses_.end(), uses.begin(), uses.end());
+    addEdge(corner, static_cast<std::uint32_t>(uses.size()));
+    BoundaryEdge& added = edges_.back();
+    if ((added.from > added.to) != crowded_.isReversed(edge)) {
+      std::swap(added.from, added.to);
     }
   }
 
   const SurfaceMesh& mesh_;
   std::span<const std::uint32_t> cluster_of_;
+  const CrowdedUses& crowded_;
   std::vector<BoundaryEdge> edges_;
   std::vector<ChainUse> uses_;
-  std::vector<ChainUse> sums_;
 };
 
 // Chains, with numbers that count from the first vertex and use here.
@@ -292,9 +337,10 @@ void findChains(SurfaceMesh& mesh, Gathered& gathered, const ParallelFor& parall
   std::vector<KeptChains> of_part(parts.count());
   {
     base::PartStore store;
+    const CrowdedUses crowded(mesh, gathered.cluster_of, parallel_for);
     parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
       Chains made;
-      ClusterBoundary boundary(mesh, gathered.cluster_of);
+      ClusterBoundary boundary(mesh, gathered.cluster_of, crowded);
       ChainMaker maker(mesh.vertices, made);
       base::Rows<std::uint32_t> by_cluster;
       for (std::uint32_t part = first; part < last; ++part) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "src/base/parts.h"
+#include "src/base/rows.h"
 #include "src/base/scratch_array.h"
 
 namespace sightline::occluders {
@@ -20,6 +21,8 @@ namespace {
 constexpr std::size_t kTrianglesOfChunk = 16384;
 constexpr double kRounding = 1e-6;  // far above that of cosines, and of a plane through single precision
 constexpr std::uint32_t kUngathered = 0xffffffffu;
+// At an edge with more triangles, a part looks for more of them only once.
+constexpr std::size_t kManySides = 64;
 
 std::uint32_t clamped(std::uint32_t triangles) {
   return std::clamp(triangles, 1u, 65535u);
@@ -53,6 +56,12 @@ Vec3d unitNormal(std::span<const Vec3f> vertices, const std::uint32_t* corners) 
   return size > 0.0 ? normal / size : Vec3d{};
 }
 
+// Where a part stands with a crowded edge.
+struct CrowdedVisit {
+  std::uint32_t first_free = 0;      // no side before this one is that of a free triangle
+  std::uint32_t seed = kUngathered;  // of the last part that looked for triangles there
+};
+
 // Gathers triangles of the same sidedness from a first one on over its edges, one part after the other. A
 // part that is half full grows no farther over T-junctions: what it reached there would be of many objects,
 // and the depth of a part is that of its farthest one.
@@ -65,6 +74,7 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
   for (std::uint32_t t = 0; t < count; ++t) {
     parts.place_of[t] = freeOf(scene.materialOf(scene.objects[mesh.objects[t]]).double_sided);
   }
+  std::vector<CrowdedVisit> visits(mesh.crowded.count());
   std::uint32_t end = 0;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     const std::uint32_t free = parts.place_of[seed];
@@ -79,15 +89,33 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
         parts.triangles[end++] = t;
       }
     };
+    const auto takeBeyond = [&](Corner corner) {
+      const std::uint32_t edge = mesh.beyond[corner] - SurfaceMesh::kCrowded;
+      if (edge >= visits.size() || mesh.crowded[edge].size() <= kManySides) {
+        mesh.forEachBeyond(corner, take);
+        return;
+      }
+      CrowdedVisit& visit = visits[edge];
+      if (std::exchange(visit.seed, seed) == seed) {
+        return;
+      }
+      const std::span<const Side> sides = mesh.crowded[edge];
+      while (visit.first_free < sides.size() && parts.place_of[sides[visit.first_free].triangle()] < kFree) {
+        ++visit.first_free;
+      }
+      for (std::size_t i = visit.first_free; i < sides.size() && end < most; ++i) {
+        take(sides[i].triangle());
+      }
+    };
     std::uint32_t next = end;
     parts.place_of[seed] = end;
     parts.triangles[end++] = seed;
-    for (; next < end; ++next) {
+    for (; next < end && end < most; ++next) {
       from = parts.triangles[next];
       const Corner corner = 3 * from;
-      mesh.forEachBeyond(corner, take);
-      mesh.forEachBeyond(corner + 1, take);
-      mesh.forEachBeyond(corner + 2, take);
+      takeBeyond(corner);
+      takeBeyond(corner + 1);
+      takeBeyond(corner + 2);
     }
     parts.first.push_back(end);
   }
@@ -119,21 +147,21 @@ class PartDivider {
     begin_part_ = parts_.first[part];
     size_ = parts_.first[part + 1] - begin_part_;
     look();
-    patch_of_.assign(size_, kUngathered);
-    cluster_of_.assign(size_, kUngathered);
+    patches_.begin(size_, crowded_.count());
+    clusters_.begin(size_, crowded_.count());
     by_patch_.clear();
     division.patch_counts.push_back(0);
     std::uint32_t written = begin_part_;
     for (std::uint32_t seed = 0; seed < size_; ++seed) {
-      if (patch_of_[seed] != kUngathered) {
+      if (patches_.number_of[seed] != kUngathered) {
         continue;
       }
-      gather(seed, patch_triangles_, kUngathered, division.patch_counts.back()++, patch_of_, in_patch_);
-      const std::uint32_t patch = patch_of_[seed];
+      gather(seed, patch_triangles_, kUngathered, division.patch_counts.back()++, patches_, in_patch_);
+      const std::uint32_t patch = patches_.number_of[seed];
       division.cluster_counts.push_back(0);
       for (const std::uint32_t first : in_patch_) {
         by_patch_.push_back(triangleOf(first));
-        if (cluster_of_[first] != kUngathered) {
+        if (clusters_.number_of[first] != kUngathered) {
           continue;
         }
         const auto number = static_cast<std::uint32_t>(division.sizes.size());
@@ -141,9 +169,9 @@ class PartDivider {
           // Gathered from the same triangle on, the cluster has the triangles of the patch in the same order.
           in_cluster_ = in_patch_;
           std::for_each(in_patch_.begin(), in_patch_.end(),
-                        [&](std::uint32_t i) { cluster_of_[i] = number; });
+                        [&](std::uint32_t i) { clusters_.number_of[i] = number; });
         } else {
-          gather(first, cluster_triangles_, patch, number, cluster_of_, in_cluster_);
+          gather(first, cluster_triangles_, patch, number, clusters_, in_cluster_);
         }
         ++division.cluster_counts.back();
         division.sizes.push_back(static_cast<std::uint32_t>(in_cluster_.size()));
@@ -157,7 +185,18 @@ class PartDivider {
   }
 
  private:
-  static constexpr std::uint32_t kSeveral = 0xfffffffeu;  // triangles may lie beyond an edge
+  // Triangles of a part by the groups to which they were gathered.
+  struct Groups {
+    std::vector<std::uint32_t> number_of;
+    // By crowded edge: the first triangle there that may be free, and the last group that looked for some.
+    std::vector<std::uint32_t> first_free, looked;
+
+    void begin(std::size_t triangles, std::size_t crowded) {
+      number_of.assign(triangles, kUngathered);
+      first_free.assign(crowded, 0);
+      looked.assign(crowded, kUngathered);
+    }
+  };
 
   std::uint32_t triangleOf(std::uint32_t i) const { return parts_.triangles[begin_part_ + i]; }
   // The number in the part; large for triangles of other parts.
@@ -167,51 +206,74 @@ class PartDivider {
   void look() {
     normals_.resize(size_);
     neighbours_.resize(std::size_t{3} * size_);
+    by_crowded_.clear();
     for (std::uint32_t i = 0; i < size_; ++i) {
       const std::uint32_t t = triangleOf(i);
       normals_[i] = unitNormal(mesh_.vertices, mesh_.triangles[t].data());
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t beyond = mesh_.beyond[3 * t + k];
-        neighbours_[std::size_t{3} * i + k] = beyond < SurfaceMesh::kCrowded ? numberOf(beyond / 3)
-                                              : beyond == SurfaceMesh::kNone ? kUngathered
-                                                                             : kSeveral;
+        neighbours_[std::size_t{3} * i + k] =
+            beyond < SurfaceMesh::kCrowded ? numberOf(beyond / 3) : kUngathered;
+        if (beyond >= SurfaceMesh::kCrowded && beyond != SurfaceMesh::kNone) {
+          by_crowded_.push_back({std::uint64_t{beyond} << 32 | (3 * t + k), 3 * i + k});
+        }
+      }
+    }
+    listCrowded();
+  }
+
+  // Lists the triangles of the part at each crowded edge, ascending.
+  void listCrowded() {
+    std::sort(by_crowded_.begin(), by_crowded_.end());
+    crowded_.clear();
+    for (std::size_t i = 0; i < by_crowded_.size(); ++i) {
+      const auto [key, corner] = by_crowded_[i];
+      neighbours_[corner] = kFirstCrowded + static_cast<std::uint32_t>(crowded_.count());
+      crowded_.add(corner / 3);
+      if (i + 1 == by_crowded_.size() || by_crowded_[i + 1].first >> 32 != key >> 32) {
+        crowded_.endRow();
       }
     }
   }
 
-  // Calls visit(i) for the triangles of the part at the edges of one of them.
-  template <typename Visit>
-  void forEachNeighbour(std::uint32_t of, const Visit& visit) const {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t neighbour = neighbours_[std::size_t{3} * of + k];
-      if (neighbour < size_) {
-        visit(neighbour);
-      } else if (neighbour == kSeveral) {
-        mesh_.forEachBeyond(3 * triangleOf(of) + k, [&](std::uint32_t t) {
-          if (numberOf(t) < size_) {
-            visit(numberOf(t));
-          }
-        });
-      }
-    }
-  }
-
-  // Gathers triangles of similar direction from a first one on, which get a number in number_of. patch: the
-  // one to which they belong; kUngathered: to any.
+  // Gathers triangles of similar direction from a first one on to a group of that number. patch: the one to
+  // which they belong; kUngathered: to any. Which triangles may be taken is the same all the while, so one
+  // look at each crowded edge finds all of them there.
   void gather(std::uint32_t seed, std::uint32_t max_triangles, std::uint32_t patch, std::uint32_t number,
-              std::vector<std::uint32_t>& number_of, std::vector<std::uint32_t>& members) {
+              Groups& groups, std::vector<std::uint32_t>& members) {
     const Vec3d& first = normals_[seed];
     members.assign(1, seed);
-    number_of[seed] = number;
+    groups.number_of[seed] = number;
     const auto take = [&](std::uint32_t i) {
-      if (number_of[i] == kUngathered && members.size() < max_triangles &&
-          (patch == kUngathered || patch_of_[i] == patch) && isSimilar(normals_[i], first, min_cosine_)) {
-        number_of[i] = number;
+      if (groups.number_of[i] == kUngathered && members.size() < max_triangles &&
+          (patch == kUngathered || patches_.number_of[i] == patch) &&
+          isSimilar(normals_[i], first, min_cosine_)) {
+        groups.number_of[i] = number;
         members.push_back(i);
       }
     };
+    const auto takeAlong = [&](std::uint32_t crowded) {
+      if (std::exchange(groups.looked[crowded], number) == number) {
+        return;
+      }
+      const std::span<const std::uint32_t> triangles = crowded_[crowded];
+      std::uint32_t& free = groups.first_free[crowded];
+      while (free < triangles.size() && groups.number_of[triangles[free]] != kUngathered) {
+        ++free;
+      }
+      for (std::size_t i = free; i < triangles.size() && members.size() < max_triangles; ++i) {
+        take(triangles[i]);
+      }
+    };
     for (std::size_t next = 0; next < members.size() && members.size() < max_triangles; ++next) {
-      forEachNeighbour(members[next], take);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t neighbour = neighbours_[std::size_t{3} * members[next] + k];
+        if (neighbour < size_) {
+          take(neighbour);
+        } else if (neighbour - kFirstCrowded < crowded_.count()) {
+          takeAlong(neighbour - kFirstCrowded);
+        }
+      }
     }
   }
 
@@ -221,9 +283,14 @@ class PartDivider {
   const double min_cosine_;
   // These belong to the part that is being gathered.
   std::uint32_t begin_part_ = 0, size_ = 0;
-  std::vector<Vec3d> normals_;             // unit
-  std::vector<std::uint32_t> neighbours_;  // by corner: one of the part, kSeveral, or none
-  std::vector<std::uint32_t> patch_of_, cluster_of_;
+  std::vector<Vec3d> normals_;  // unit
+  // By corner: a triangle of the part, kFirstCrowded and the number of a crowded edge, or any other number.
+  std::vector<std::uint32_t> neighbours_;
+  static constexpr std::uint32_t kFirstCrowded = 0x80000000u;
+  // The corners at crowded edges, each with the edge and its number in the mesh before.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> by_crowded_;
+  base::Rows<std::uint32_t> crowded_;  // the triangles at these edges
+  Groups patches_, clusters_;
   std::vector<std::uint32_t> in_patch_, in_cluster_;
   std::vector<std::uint32_t> by_patch_;  // triangles, in the order of patches
 };

@@ -121,10 +121,10 @@ DividedTriangles divideTriangles(const SurfaceMesh& mesh, const base::Rows<Loose
       through.add(vertex);
     }
     through.endRow();
-    for (const LooseSide& side : sides[open[i].low]) {
-      if (side.high == open[i].high) {
-        pieces.divided.push_back(side.side.triangle());
-      }
+    const std::span<const LooseSide> row = sides[open[i].low];
+    for (auto side = std::lower_bound(row.begin(), row.end(), LooseSide{open[i].high, {}});
+         side != row.end() && side->high == open[i].high; ++side) {
+      pieces.divided.push_back(side->side.triangle());
     }
   }
   std::sort(pieces.divided.begin(), pieces.divided.end());
