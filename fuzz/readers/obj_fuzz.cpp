@@ -1,5 +1,5 @@
-// Feeds bytes to the reader of .obj and .mtl files, which must return a valid scene or an error: the text of an
-// .obj file and, after a zero byte, that of an .mtl file.
+// Feeds bytes to the reader of .obj and .mtl files, which must return a valid scene or an error: the text of
+// an .obj file and, after a zero byte, that of an .mtl file.
 
 #include <algorithm>
 
