@@ -86,8 +86,8 @@ class ImageSpace {
   // eye and, in an orthographic view, scene::sightDirection() alone, as the exact direction does: axes may be
   // off by single-precision rounding.
   ViewRay lineOfSight(const Vec3d& direction) const;
-  // How far its origin may be off, metres, besides the rounding of its own coordinates: coordinates of a
-  // direction are rounded as those are that are as large as an orthographic picture.
+  // How far its origin may be off, metres, besides the rounding of its own coordinates: in an orthographic
+  // view a direction is rounded to a part of the picture's size, however near the scene lies to the eye.
   double originSlack() const { return view_.orthographic ? 0x1p-36 * std::abs(last_) : 0.0; }
   // About the same line from the near plane, by the view's axes.
   ViewRay ray(const Vec3d& direction) const;

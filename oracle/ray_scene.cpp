@@ -7,14 +7,16 @@ namespace {
 
 constexpr std::uint64_t kManyTriangles = 4'000'000;  // above this count, prefer less memory to more speed
 
-// Embree takes coordinates up to the square root of the largest number, and may end the program at others.
+// Embree may end the program at origins and directions with larger numbers.
 constexpr float kFarthestRay = 1e18f;
 
-// Whether Embree may trace the ray. Others meet nothing, and what they might have shown is left to the search
-// that follows rays.
+// Whether Embree may trace the ray. Others meet nothing, and what they might have shown is left to the exact
+// search that comes after rays.
 bool isTraceable(const FloatRay& ray) {
-  const auto near = [](float x) { return std::abs(x) <= kFarthestRay; };
-  return near(ray.origin.x) && near(ray.origin.y) && near(ray.origin.z) && isFinite(ray.direction);
+  const auto near = [](const Vec3f& v) {
+    return std::abs(v.x) <= kFarthestRay && std::abs(v.y) <= kFarthestRay && std::abs(v.z) <= kFarthestRay;
+  };
+  return near(ray.origin) && near(ray.direction);
 }
 
 Vec3d normalOf(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
@@ -30,7 +32,9 @@ RTCScene newScene(RTCDevice device, bool compact) {
 
 void setRays(const RayScene::Batch& rays, std::uint32_t count, RTCRayHit16& packet) {
   for (std::uint32_t i = 0; i < RayScene::kBatch; ++i) {
-    const FloatRay& ray = rays[i < count ? i : 0];
+    // Where vectors are short, Embree also looks at those that are not to be traced.
+    const FloatRay ray =
+        i < count && isTraceable(rays[i]) ? rays[i] : FloatRay{{}, {0.0f, 0.0f, 1.0f}, -1.0f};
     packet.ray.org_x[i] = ray.origin.x;
     packet.ray.org_y[i] = ray.origin.y;
     packet.ray.org_z[i] = ray.origin.z;

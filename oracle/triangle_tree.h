@@ -32,7 +32,7 @@ class TriangleTree {
   std::uint32_t rootOf(ObjectId object) const { return object_roots_[object.value]; }
 
   // Calls visit(leaf) for all triangles whose boxes the ray from `origin` may intersect, beyond rounding.
-  // slack: how far the origin may be off, besides the rounding of its coordinates.
+  // slack: how far the origin may be off, metres, besides the rounding of its coordinates.
   template <typename Visit>
   void alongRay(const Vec3d& origin, const Vec3d& direction, double slack, Visit&& visit) const {
     std::vector<std::uint32_t> open;

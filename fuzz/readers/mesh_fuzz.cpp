@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   requireSound(*in_child);
   const Result<Scene> here = io::importAssimp(file, kLimits, found_here);
-  require(here && found.inexact_polygons == found_here.inexact_polygons &&
+  require(here && found.uncertain_polygons == found_here.uncertain_polygons &&
           here->positions == in_child->positions && here->indices == in_child->indices);
   return 0;
 }

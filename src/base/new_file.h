@@ -39,7 +39,10 @@ inline bool writeAll(int descriptor, std::span<const std::byte> bytes) {
   constexpr std::size_t kMaxAtOnce = 1u << 30;  // bytes of one call of the system
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), kMaxAtOnce));
-    if (written < 0 && errno != EINTR) {
+    if (written == 0) {
+      errno = EIO;
+    }
+    if (written == 0 || (written < 0 && errno != EINTR)) {
       return false;
     }
     bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));

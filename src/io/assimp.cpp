@@ -1,4 +1,4 @@
-// OBJ, PLY, STL, FBX, COLLADA and the rest. Assimp parses; what it hands over is checked here like a glTF's.
+// PLY, STL, FBX, COLLADA and the rest. Assimp parses; what it hands over is checked here like a glTF's.
 
 #include "src/io/assimp.h"
 
@@ -13,7 +13,9 @@
 #include <exception>
 #include <new>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -39,8 +41,8 @@ constexpr unsigned char kSceneFollows = 1, kErrorFollows = 2;  // what an answer
 // not. Not aiProcess_SortByPType either, which divides meshes of triangles and other polygons.
 constexpr unsigned kSteps = aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices;
 constexpr int kUnusedComponents = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS;
+                                  aiComponent_TEXCOORDS | aiComponent_TEXTURES | aiComponent_LIGHTS |
+                                  aiComponent_CAMERAS;
 
 // A .ply has no materials: only the colours of its vertices say that it is glass. Those of other files hold
 // masks and the like as well, and are not looked at.
@@ -123,29 +125,48 @@ class AssimpConverter {
       builder_.addMaterial(std::move(material));
     }
     // Depth first; Assimp's nodes form a tree, each owning its children.
-    std::vector<Open> open{{source_.mRootNode, Mat4{}}};
+    const std::set<std::string, std::less<>> animated = animatedNodes();
+    std::vector<Place> open{{source_.mRootNode}};
     while (!open.empty()) {
-      const Open at = open.back();
+      Place at = open.back();
       open.pop_back();
-      const Mat4 world_from_node = at.world_from_parent * matrixFrom(at.node->mTransformation);
-      if (const Status status = addMeshes(*at.node, world_from_node); !status) {
+      constexpr double kRounding = 1e-6;  // of matrices that Assimp multiplies in single precision
+      at.to_world = at.to_world * matrixFrom(at.node->mTransformation);
+      at.moves = at.moves || animated.contains(std::string_view(at.node->mName.C_Str()));
+      at.flat = at.flat || cornerOrder(at.to_world, kRounding) == CornerOrder::kUnknown;
+      if (const Status status = addMeshes(at); !status) {
         return status.error();
       }
       for (unsigned i = at.node->mNumChildren; i-- > 0;) {
-        open.push_back({at.node->mChildren[i], world_from_node});
+        open.push_back(at);
+        open.back().node = at.node->mChildren[i];
       }
     }
     return builder_.finish();
   }
 
  private:
-  struct Open {
-    const aiNode* node;
-    Mat4 world_from_parent;
+  // A node, and what holds for it and all below it.
+  struct Place {
+    const aiNode* node = nullptr;
+    Mat4 to_world{};     // from its parent, as long as it is to be visited
+    bool moves = false;  // by an animation
+    bool flat = false;   // CornerOrder::kUnknown
   };
 
+  std::set<std::string, std::less<>> animatedNodes() const {
+    std::set<std::string, std::less<>> names;
+    for (const aiAnimation* animation : std::span(source_.mAnimations, source_.mNumAnimations)) {
+      for (const aiNodeAnim* channel : std::span(animation->mChannels, animation->mNumChannels)) {
+        names.emplace(channel->mNodeName.C_Str());
+      }
+    }
+    return names;
+  }
+
   // One object for each mesh that has triangles.
-  Status addMeshes(const aiNode& node, const Mat4& world_from_node) {
+  Status addMeshes(const Place& place) {
+    const aiNode& node = *place.node;
     std::vector<unsigned> numbers;
     for (const unsigned number : std::span(node.mMeshes, node.mNumMeshes)) {
       if (number >= source_.mNumMeshes) {
@@ -163,7 +184,7 @@ class AssimpConverter {
       if (numbers.size() > 1) {
         object_name += fmt::format("/primitive{}", i);
       }
-      const Status status = addMesh(std::move(object_name), numbers[i], world_from_node);
+      const Status status = addMesh(std::move(object_name), numbers[i], place);
       if (!status) {
         return status;
       }
@@ -171,7 +192,7 @@ class AssimpConverter {
     return Success{};
   }
 
-  Status addMesh(std::string object_name, unsigned number, const Mat4& world_from_node) {
+  Status addMesh(std::string object_name, unsigned number, const Place& place) {
     const aiMesh& mesh = *source_.mMeshes[number];
     if (mesh.mMaterialIndex >= source_.mNumMaterials) {
       return failure("{}: mesh {}: material {} does not exist (the file has {})", name_, number,
@@ -184,15 +205,16 @@ class AssimpConverter {
       return failure("{}: mesh {}: with its {} triangles the scene exceeds {} triangles", name_, number,
                      triangles, limits_.triangles);
     }
-    constexpr double kRounding = 1e-6;  // of matrices that Assimp multiplies in single precision
-    const CornerOrder order = cornerOrder(world_from_node, kRounding);
+    // It stands in its rest pose, and only for a while.
+    const bool moves = place.moves || mesh.mNumBones > 0 || mesh.mNumAnimMeshes > 0;
+    findings_.moving_objects += moves ? 1 : 0;
     builder_.beginObject(std::move(object_name), MaterialId(mesh.mMaterialIndex),
-                         order == CornerOrder::kUnknown ? OccluderMark::kNever : OccluderMark::kAutomatic);
+                         moves || place.flat ? OccluderMark::kNever : OccluderMark::kAutomatic);
     vertex_of_.assign(mesh.mNumVertices, kNone);
-    const bool mirrored = order == CornerOrder::kReversed;
+    const bool mirrored = determinant3(place.to_world) < 0.0;
     for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
       if (isPolygon(mesh.mFaces[face])) {
-        const Status status = addFace(mesh, number, face, world_from_node, mirrored);
+        const Status status = addFace(mesh, number, face, place.to_world, mirrored);
         if (!status) {
           return status;
         }
@@ -291,6 +313,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
     writer.add(scene ? kSceneFollows : kErrorFollows);
     if (scene) {
       writer.add(found.uncertain_polygons);
+      writer.add(found.moving_objects);
       writer.addBytes(sceneBytes(*scene));
     } else {
       writer.addBytes(std::as_bytes(std::span(scene.error().message)));
@@ -307,6 +330,7 @@ Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_by
     return failure("{}", std::string_view(reinterpret_cast<const char*>(text.data()), text.size()));
   }
   findings.uncertain_polygons = reader.read<std::uint64_t>();
+  findings.moving_objects = reader.read<std::uint64_t>();
   std::optional<Scene> scene = sceneFromBytes(reader.readBytes(reader.remaining()));
   return scene ? Result<Scene>(std::move(*scene))
                : failure("{}: could not be read: its reader gave a broken answer", file);

@@ -9,12 +9,13 @@
 
 namespace sightline::io {
 
-// Whether Assimp reads files with this extension (".obj").
+// Whether Assimp reads files with this extension (".ply").
 bool isAssimpExtension(const std::string& extension);
 
 // What both functions find beside the scene.
 struct AssimpFindings {
-  std::uint64_t uncertain_polygons = 0;  // PolygonTriangles::exact; their objects are never occluders
+  std::uint64_t uncertain_polygons = 0;  // those that are not PolygonTriangles::exact
+  std::uint64_t moving_objects = 0;      // by animations, bones or morph targets: they are no occluders
 };
 
 // Reads the file in this process, which Assimp may bring down.

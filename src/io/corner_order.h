@@ -15,9 +15,10 @@ enum class CornerOrder : std::uint8_t {
 };
 
 // Compares the determinant with the product of the columns' lengths. rounding: how large their ratio may be
-// in a transform that is flat but for rounding. With elements of double precision, each product of a chain of
-// transforms adds a few times 2^-53 to it; 1e-12 is 9007 times 2^-53. Columns of something that is not flat,
-// however small or thin, lie in a plane less nearly than that.
+// in a transform that is flat but for rounding. With elements of double precision, that is a few times 2^-53;
+// 1e-12 is 9007 times 2^-53. Columns of something that is not flat, however small or thin, lie in a plane
+// less nearly than that. A product with what is flat is flat, but may have a larger ratio where it shrinks
+// the plane: ask about each factor, too.
 inline CornerOrder cornerOrder(const Mat4& transform, double rounding = 1e-12) {
   Mat4 unit;
   for (int column = 0; column < 3; ++column) {

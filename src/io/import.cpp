@@ -18,10 +18,20 @@ namespace {
 
 void noteUncertain(std::uint64_t polygons, Result<Scene>& scene) {
   if (scene && polygons > 0) {
-    scene->notes.push_back(
-        fmt::format("{} {} or {} too many corners; {} nothing; give triangles instead", polygons,
-                    polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
-                    polygons == 1 ? "has" : "have", polygons == 1 ? "it hides" : "they hide"));
+    scene->notes.push_back(fmt::format(
+        "{} {} or {} more corners or larger coordinates than can be cut exactly; {} nothing; give "
+        "triangles instead",
+        polygons, polygons == 1 ? "polygon crosses itself" : "polygons cross themselves",
+        polygons == 1 ? "has" : "have", polygons == 1 ? "it hides" : "they hide"));
+  }
+}
+
+void noteMoving(std::uint64_t objects, Result<Scene>& scene) {
+  if (scene && objects > 0) {
+    scene->notes.push_back(fmt::format(
+        "objects that move, by animations, bones or morph targets: {}. They stand in their rest pose "
+        "and hide nothing. Cull them as moving objects where they are",
+        objects));
   }
 }
 
@@ -97,6 +107,7 @@ Result<Scene> importScene(const std::string& file) {
   AssimpFindings findings;
   Result<Scene> scene = importAssimpInChild(file, file_bytes, ImportLimits{}, findings);
   noteUncertain(findings.uncertain_polygons, scene);
+  noteMoving(findings.moving_objects, scene);
   if (scene && may_be_see_through) {
     for (Material& material : scene->materials) {
       material.opacity = Opacity::kBlended;

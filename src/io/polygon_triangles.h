@@ -15,10 +15,10 @@ namespace sightline::io {
 
 struct PolygonTriangles {
   // Numbers of corners; valid until the next call. Two fewer than corners at most, and at least one. All
-  // together they reach as far as the corners, along each axis.
+  // together they reach as far as the corners, along each axis of the space that these are in.
   std::span<const std::array<std::uint32_t, 3>> triangles{};
   // Whether they cover just the polygon, each point once. Where they do not, they are a fan around the first
-  // corner, which may cover anything: the object must hide nothing (OccluderMark::kNever).
+  // corner, which may cover anything and must hide nothing.
   bool exact = true;
 };
 
@@ -35,8 +35,9 @@ struct PolygonTriangles {
 class PolygonTriangulator {
  public:
   static constexpr std::size_t kMostCorners = 1 << 14;
-  // Steps: comparisons of a corner or a triangle with a triangle, some nanoseconds each. All polygons
-  // together have kSteps, and kStepsOfCorner more for each of their corners.
+  // Steps: comparisons of a corner or a triangle with a triangle, some nanoseconds each, and up to some
+  // hundred where coordinates differ so much in size that signs take whole numbers of many words. All
+  // polygons together have kSteps, and kStepsOfCorner more for each of their corners.
   static constexpr std::uint64_t kSteps = std::uint64_t{1} << 29, kStepsOfCorner = 64;
 
   explicit PolygonTriangulator(std::uint64_t steps = kSteps) : steps_left_(steps) {}

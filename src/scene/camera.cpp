@@ -10,9 +10,9 @@
 namespace sightline {
 namespace {
 
-// The most that setOrientation() leaves as the cosine between right and forward: a few roundings. Where the
-// hint is more than 7 degrees off the direction, or along an axis of space, the cross product is that good by
-// itself.
+// Above this cosine between right and forward, a few roundings, right is made perpendicular once more. Where
+// the hint is more than 7 degrees off the direction, or along an axis of space, the cross product is that
+// good by itself.
 constexpr double kPerpendicular = 0x1p-50;
 
 // Unit vector of any but the zero vector, which stays zero. Squares of the longest and of the shortest

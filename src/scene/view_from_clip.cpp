@@ -149,7 +149,8 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   if (length(rows.z.normal - depth.normal * a) > kTilt * rows.z.length()) {
     return tiltedDepths();
   }
-  // Its value at the eye: rounding may have turned it by a little, about the eye and not about the origin.
+  // The value of row z at the eye: rounding may have tilted the row, so that its value at the origin says
+  // nothing about the eye.
   const double b = dot(rows.z.normal, view.eye) + rows.z.offset;
   view.z_near = b / (range.near * q - a);
   view.z_far = farOf(view, rows.z - rows.w * range.far);

@@ -177,6 +177,34 @@ TEST_F(Files, WhatATransformFlattensHidesNothing) {
   }
 }
 
+// What stands below a node that moves moves with it.
+TEST_F(Files, WhatAnAnimationOfAnotherFormatMovesHidesNothing) {
+  std::string moving = flattenedDae("1 1 1");
+  moving.replace(moving.find("<scale>"), 7, "<scale sid=\"k\">");
+  const auto source = [](const std::string& id, const std::string& name, const std::string& values) {
+    return "<source id=\"" + id + "\"><float_array id=\"" + id + "a\" count=\"2\">" + values +
+           "</float_array><technique_common><accessor source=\"#" + id + "a\" count=\"2\"><param name=\"" +
+           name + "\" type=\"float\"/></accessor></technique_common></source>";
+  };
+  moving.insert(moving.find("<library_visual_scenes>"),
+                "<library_animations><animation id=\"a\">" + source("i", "TIME", "0 1") +
+                    source("o", "X", "1 9") +
+                    "<sampler id=\"m\"><input semantic=\"INPUT\" source=\"#i\"/><input semantic=\"OUTPUT\" "
+                    "source=\"#o\"/></sampler><channel source=\"#m\" target=\"flat/k.X\"/></animation>"
+                    "</library_animations>");
+  const Result<Scene> scene = importScene(folder.write("moving.dae", moving));
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->objects.size(), 1u);
+  EXPECT_EQ(scene->objects[0].mark, OccluderMark::kNever);
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_EQ(scene->notes[0].find("objects that move, by animations, bones or morph targets: 1."), 0u)
+      << scene->notes[0];
+  const Result<Scene> still = importScene(folder.write("still.dae", flattenedDae("1 1 1")));
+  ASSERT_TRUE(still) << still.error().message;
+  EXPECT_EQ(still->objects[0].mark, OccluderMark::kAutomatic);
+  EXPECT_TRUE(still->notes.empty());
+}
+
 TEST_F(Files, PlyIsReadInTriangles) {
   const Result<Scene> scene = importScene(folder.write("a.PLY", kPly));
   ASSERT_TRUE(scene) << scene.error().message;

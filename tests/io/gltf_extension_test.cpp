@@ -37,6 +37,7 @@ TEST(GltfExtension, WhatLetsLightThroughIsNotOpaque) {
   EXPECT_EQ(opacityOf("ADOBE_materials_thin_transparency", {{"transmissionFactor", 0}}), kOpaque);
   EXPECT_EQ(opacityOf("KHR_materials_volume", {{"thicknessFactor", 1}}), kOpaque)
       << "it says what light meets that another extension lets through";
+  EXPECT_EQ(opacityOf("MSFT_lod", {{"ids", {0}}}), kBlended) << "a coarser one may be glass";
   const json glossy = {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {1, 1, 1, 0.25}}}}};
   EXPECT_EQ(opacityWith({{"extensions", glossy}}), kOpaque) << "alpha counts only in mode BLEND";
   EXPECT_EQ(opacityWith({{"extensions", glossy}, {"alphaMode", "BLEND"}}), kBlended);
@@ -247,6 +248,15 @@ TEST(GltfFlat, TransformsThatFlattenHideNothingWhateverTheirMark) {
     EXPECT_EQ(imported(glb.bytes()).objects[0].mark, OccluderMark::kOccluder) << "thin, but not flat";
   }
   EXPECT_EQ(flattened, 59);
+  // What is flat stays so where a parent shrinks its plane, and not what rounding has added to it.
+  Glb shrunk = oneTriangle();
+  shrunk.json["nodes"][0]["rotation"] = {0, std::sin(0.3), 0, std::cos(0.3)};
+  shrunk.addNode({{"scale", {1, 1, 0}}, {"children", {0}}});
+  shrunk.addNode({{"rotation", {std::sin(0.7), 0, 0, std::cos(0.7)}}, {"children", {1}}});
+  shrunk.addNode({{"scale", {1e-9, 1e-9, 1}}, {"children", {2}}});
+  shrunk.addNode({{"rotation", {-std::sin(0.7), 0, 0, std::cos(0.7)}}, {"children", {3}}});
+  shrunk.json["scenes"][0]["nodes"] = {4};
+  EXPECT_EQ(imported(shrunk.bytes()).objects[0].mark, OccluderMark::kNever);
   Glb glb = oneTriangle();
   glb.json["nodes"][0]["scale"] = {1, 1, 0};
   EXPECT_EQ(imported(glb.bytes()).objects[0].mark, OccluderMark::kNever);

@@ -130,6 +130,17 @@ TEST(GltfSkin, ASkinnedMeshHidesNothingUnlessItIsMarked) {
   EXPECT_EQ(imported(skinned.glb.bytes()).objects[0].mark, OccluderMark::kNever) << "the node's is stronger";
 }
 
+TEST(GltfSkin, ASkinnedMeshHidesNothingWhereSomeRenderersTurnItOver) {
+  for (const double scale : {1.0, -1.0, 0.0}) {
+    SkinnedTriangle skinned;
+    skinned.glb.json["meshes"][0]["extras"] = {{"occluder", true}};
+    skinned.glb.json["nodes"][0]["scale"] = {1, 1, scale};
+    EXPECT_EQ(imported(skinned.glb.bytes()).objects[0].mark,
+              scale > 0.0 ? OccluderMark::kOccluder : OccluderMark::kNever)
+        << scale;
+  }
+}
+
 TEST(GltfSkin, AMeshWithJointsButNoSkinIsPlacedByItsNode) {
   SkinnedTriangle skinned;
   skinned.glb.json["nodes"][0].erase("skin");

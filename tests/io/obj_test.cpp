@@ -160,17 +160,35 @@ TEST_F(Obj, ObjectsAreThoseOfObjectsGroupsAndMaterials) {
 }
 
 TEST_F(Obj, MaterialsThatLetLightThroughHideNothing) {
-  for (const char* glass :
-       {"d 0.5", "d -halo 0.5", "Tr 0.2", "tr .2", "D 0", " d\t0.5 # half", "Tf 0.1 0.1 0.1", "Tf 1 1 0.9",
-        "Tf 0", "Tf xyz 0.5 0.5 0.5", "Tf spectral glass.rfl 1", "d 0.5\nd 1", "Tr 0.5\nd 1", "d 1\nTr 1",
-        "map_d a.png\nd 0.5", "d 0.5\nmap_d a.png", "d 0.5\nnewmtl other\nnewmtl m\nd 1"}) {
+  for (const char* glass : {"d 0.5",
+                            "d -halo 0.5",
+                            "Tr 0.2",
+                            "tr .2",
+                            "D 0",
+                            " d\t0.5 # half",
+                            "Tf 0.1 0.1 0.1",
+                            "Tf 1 1 0.9",
+                            "Tf 0",
+                            "illum 6",
+                            "illum 7\nd 1",
+                            "illum 9 # glass",
+                            "# from C:\\scenes\\\nd 0.5",
+                            "map_Kd ..\\textures\\\nd 0.5",
+                            "Tf xyz 0.5 0.5 0.5",
+                            "Tf spectral glass.rfl 1",
+                            "d 0.5\nd 1",
+                            "Tr 0.5\nd 1",
+                            "d 1\nTr 1",
+                            "map_d a.png\nd 0.5",
+                            "d 0.5\nmap_d a.png",
+                            "d 0.5\nnewmtl other\nnewmtl m\nd 1"}) {
     EXPECT_EQ(materialIn(glass).opacity, Opacity::kBlended) << glass;
   }
   for (const char* leaf : {"map_d a.png", "map_Tr a.png", "map_opacity -s 1 1 1 a.png", "MAP_D a.png\nd 1"}) {
     EXPECT_EQ(materialIn(leaf).opacity, Opacity::kAlphaTested) << leaf;
   }
   for (const char* wall : {"", "d 1", "d 1.0\nTr 0", "Tf 1 1 1", "Tf 1", "d -halo 1", "aniso 0.5", "illum 2",
-                           "decal a.png", "map_Kd a.png", "Ks 0 0 0", "newmtl other\nd 0.5"}) {
+                           "illum 4", "decal a.png", "map_Kd a.png", "Ks 0 0 0", "newmtl other\nd 0.5"}) {
     EXPECT_EQ(materialIn(wall).opacity, Opacity::kOpaque) << wall;
   }
   const Material material = materialIn("Kd 0.5 0.25 2\nd 0.5");
@@ -178,6 +196,28 @@ TEST_F(Obj, MaterialsThatLetLightThroughHideNothing) {
   EXPECT_EQ(materialIn("Kd 0.5").base_color, (std::array<float, 4>{0.5f, 0.5f, 0.5f, 1.0f}));
   EXPECT_EQ(materialIn("Kd spectral a.rfl").opacity, Opacity::kOpaque);
   EXPECT_FALSE(material.double_sided);
+}
+
+TEST_F(Obj, NothingGetsTheMaterialOfWhatCameBefore) {
+  folder_.write("a.mtl", "newmtl wall\nnewmtl glass\nd 0.5\nnewmtl\nd 0.5\n");
+  const std::string begin = "mtllib a.mtl\n" + kSquare + "usemtl wall\n";
+  for (const char* glass : {"usemtl glass", "USEMTL glass", "# C:\\\nusemtl glass", "usemtl"}) {
+    EXPECT_EQ(materialOf(begin + glass + "\nf 1 2 3\n").opacity, Opacity::kBlended) << glass;
+  }
+}
+
+TEST_F(Obj, FacesOfVerticesThatMayBeSeeThroughHideNothing) {
+  for (const char* form : {"v 0 0 0 1 0.5 0.5 0.5 {}", "v 0 0 0 0.5 0.5 0.5 {}"}) {
+    for (const char* alpha : {"1", "0.9"}) {
+      const Scene scene = read("v 1 0 0\nv 1 1 0\nv 0 1 0\n" + fmt::format(fmt::runtime(form), alpha) +
+                               "\nf 1 2 3\nf 4 1 2\n");
+      const bool apart = alpha[0] == '0';
+      ASSERT_EQ(scene.objects.size(), apart ? 2u : 1u) << form;
+      EXPECT_EQ(scene.objects[0].mark, OccluderMark::kAutomatic);
+      EXPECT_EQ(scene.objects.back().mark, apart ? OccluderMark::kNever : OccluderMark::kAutomatic) << form;
+      EXPECT_EQ(findings_.uncertain_polygons, 0u);
+    }
+  }
 }
 
 TEST_F(Obj, NumbersThatMaterialsNeedAreMissed) {

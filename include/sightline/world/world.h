@@ -175,7 +175,8 @@ class World {
   // doors: those that the sets were baked with (SightFile::doors). They may move, be hidden and removed
   // without becoming tombstones, since the sets hold while all of them are open, and are always tested like
   // what came. Where the look-up is told that some are closed (SetQuery::setClosedDoors), it is for the
-  // caller to see to that these stand where they were baked.
+  // caller to see to that these are there and shown, stand where they were baked, are as opaque as they were
+  // then, and belong to all groups that are culled.
   SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {},
                  std::span<const ObjectId> doors = {});
   void dropSets(SetsId sets);

@@ -106,6 +106,7 @@ struct GltfFile {
     bool double_sided = false;
     std::array<double, 4> base_color{1, 1, 1, 1};
     double transmission = 0.0;  // the largest of all extensions that let light through
+    bool exchanged = false;     // for another one at times
     std::optional<bool> occluder;
   };
 

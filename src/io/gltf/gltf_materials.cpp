@@ -25,8 +25,10 @@ Result<Material> convert(const Document& document, std::size_t number) {
 
 Opacity opacityOf(const Document& document, std::size_t number) {
   const GltfFile::Material& material = document.file.materials[number];
-  // Transmission lets light through whatever the alpha mode says.
-  if (material.alpha_mode == "BLEND" || material.transmission > 0.0 || document.moving.materials[number]) {
+  // Transmission lets light through whatever the alpha mode says, and so may materials for other levels of
+  // detail.
+  if (material.exchanged || material.alpha_mode == "BLEND" || material.transmission > 0.0 ||
+      document.moving.materials[number]) {
     return Opacity::kBlended;
   }
   return material.alpha_mode == "MASK" ? Opacity::kAlphaTested : Opacity::kOpaque;

@@ -154,12 +154,12 @@ class ObjectAdder {
   }
 
   Status addPrimitives(const MeshSource& mesh, Placement& placement) {
-    const CornerOrder order = cornerOrder(placement.world_from_node);
+    const CornerOrder order =
+        tree_.flat[placement.node] ? CornerOrder::kUnknown : cornerOrder(placement.world_from_node);
     // The node of a skinned mesh does not place it, and no renderer looks at the determinants of joints: the
-    // order stays as it is, also where joints mirror. But some turn it over where the node mirrors.
-    placement.order = placement.joints.empty()          ? order
-                      : order == CornerOrder::kReversed ? CornerOrder::kUnknown
-                                                        : CornerOrder::kKept;
+    // order stays as it is, also where joints mirror. But some turn it over where the node mirrors, or seems
+    // to, being flat.
+    placement.order = placement.joints.empty() || order == CornerOrder::kKept ? order : CornerOrder::kUnknown;
     for (const PrimitiveSource& primitive : mesh.primitives) {
       if (!placement.joints.empty() && primitive.joints.empty()) {
         return failure("{}: node {}: has a skin, but {} has no JOINTS_0 and WEIGHTS_0", document_.name,

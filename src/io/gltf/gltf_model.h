@@ -91,6 +91,7 @@ struct NodeTree {
   std::vector<bool> in_scene;
   std::vector<bool> moves;   // it or a node above it does: see Moving
   std::vector<bool> hidden;  // it or a node above it is, at all times
+  std::vector<bool> flat;    // it or a node above it: see CornerOrder::kUnknown
 };
 Result<NodeTree> buildNodeTree(const Document& document);
 

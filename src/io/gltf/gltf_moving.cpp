@@ -64,7 +64,8 @@ Moving movingParts(const GltfFile& file) {
     for (const GltfFile::Channel& channel : animation.channels) {
       if (Pointer pointer; readPointer(channel.pointer, pointer)) {
         addPointer(pointer, moving);
-      } else if (channel.node >= 0) {
+      }
+      if (channel.node >= 0) {
         set(channel.path == "weights" ? moving.node_shapes : moving.nodes,
             static_cast<std::size_t>(channel.node));
       }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "src/io/corner_order.h"
 #include "src/io/gltf/gltf_model.h"
 
 namespace sightline::io {
@@ -72,6 +73,8 @@ Status visitFrom(const Document& document, int root, NodeTree& tree) {
     if (!allFinite(tree.world_from_node[node])) {
       return failure("{}: node {}: its transform to world space is too large", document.name, node);
     }
+    tree.flat[node] = cornerOrder(tree.world_from_node[node]) == CornerOrder::kUnknown ||
+                      (below && tree.flat[static_cast<std::size_t>(parent)]);
     const auto& children = document.file.nodes[node].children;
     open.insert(open.end(), children.rbegin(), children.rend());
   }
@@ -188,6 +191,7 @@ Result<NodeTree> buildNodeTree(const Document& document) {
   tree.in_scene.resize(count);
   tree.moves.resize(count);
   tree.hidden.resize(count);
+  tree.flat.resize(count);
   const Result<std::vector<int>> roots = rootsOf(document, tree);
   if (!roots) {
     return roots.error();

@@ -207,6 +207,7 @@ GltfFile::Material material(const json& source) {
   }
   if (source.contains("extensions")) {
     material.transmission = transmission(source["extensions"]);
+    material.exchanged = source["extensions"].contains("MSFT_lod");
   }
   material.occluder = occluderMark(source);
   return material;

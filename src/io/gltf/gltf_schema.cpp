@@ -91,6 +91,7 @@ constexpr Field kMaterialExtensions[] = {
     {"KHR_materials_transmission", kObject, kOptional, kTransmission},
     {"KHR_materials_diffuse_transmission", kObject, kOptional, kDiffuseTransmission},
     {"ADOBE_materials_thin_transparency", kObject, kOptional, kTransmission},
+    {"MSFT_lod", kObject, kOptional, kAny},
 };
 constexpr Field kMaterial[] = {
     {"name", kText},

@@ -27,6 +27,15 @@ Result<std::vector<Mat4>> Skins::matricesOf(const GltfFile::Skin& skin, const st
   if (skin.joints.empty()) {
     return failure("{}: has no joints", where);
   }
+  constexpr std::size_t kMostJoints = 65536;  // no vertex can name more
+  if (skin.joints.size() > kMostJoints) {
+    return failure("{}: has {} joints; at most {} are read", where, skin.joints.size(), kMostJoints);
+  }
+  joints_ += skin.joints.size();
+  if (joints_ > document_.limits.elements) {
+    return failure("{}: up to here, skins have {} joints; at most {} are read", where, joints_,
+                   document_.limits.elements);
+  }
   const AccessorView* inverse_bind = nullptr;
   if (skin.inverse_bind_matrices >= 0) {
     const Result<const AccessorView*> view =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,6 +28,7 @@ class Skins {
   const NodeTree& tree_;
   Accessors& accessors_;
   std::vector<std::optional<std::vector<Mat4>>> skins_;
+  std::uint64_t joints_ = 0;  // of all that were opened
 };
 
 }  // namespace sightline::io

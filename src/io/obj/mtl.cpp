@@ -75,6 +75,14 @@ bool readStatement(std::string_view keyword, std::string_view value, Material& m
     }
     return filter.has_value();
   }
+  if (isKeyword(keyword, "illum")) {
+    // Models of refraction and of glass. Maya writes 4, which is glass too, for whatever it exports.
+    const std::optional<Numbers> model = numbersIn(value);
+    if (model && ((*model)[0] == 6.0 || (*model)[0] == 7.0 || (*model)[0] == 9.0)) {
+      material.opacity = Opacity::kBlended;
+    }
+    return true;
+  }
   if ((isKeyword(keyword, "map_d") || isKeyword(keyword, "map_tr") || isKeyword(keyword, "map_opacity")) &&
       material.opacity == Opacity::kOpaque) {
     material.opacity = Opacity::kAlphaTested;
@@ -87,7 +95,7 @@ bool readStatement(std::string_view keyword, std::string_view value, Material& m
 Status MtlMaterials::read(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kNone = ~std::size_t{0};
   std::size_t current = kNone;
-  for (ObjStatements statements(bytes); statements.next();) {
+  for (ObjStatements statements(bytes, ObjStatements::Backslash::kIsText); statements.next();) {
     if (isKeyword(statements.keyword(), "newmtl")) {
       const auto [found, added] =
           by_name_.try_emplace(std::string(statements.value()), static_cast<std::int64_t>(materials_.size()));
@@ -126,7 +134,7 @@ std::int64_t MtlMaterials::find(std::string_view value) const {
 std::vector<std::string> picturesOfMtl(std::string_view bytes) {
   constexpr std::array<std::string_view, 5> kOthers{"bump", "disp", "decal", "refl", "norm"};
   std::vector<std::string> pictures;
-  for (ObjStatements statements(bytes); statements.next();) {
+  for (ObjStatements statements(bytes, ObjStatements::Backslash::kIsText); statements.next();) {
     const std::string_view keyword = statements.keyword();
     if (isKeyword(keyword.substr(0, 4), "map_") ||
         std::any_of(kOthers.begin(), kOthers.end(),

@@ -3,9 +3,9 @@
 // Materials of .mtl files.
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "sightline/base/result.h"
@@ -18,9 +18,10 @@ inline constexpr float kMtlColor = 0.6f;
 
 class MtlMaterials {
  public:
-  // Adds the materials of a file. What lets light through makes a material blended: d or Tr, Tf below 1. A
-  // picture of its opacity (map_d, map_Tr, map_opacity) makes it alpha-tested. Other statements than these
-  // and Kd are skipped. If a material is defined several times, it is as little opaque as any of them says.
+  // Adds the materials of a file. What lets light through makes a material blended: d or Tr, Tf below 1,
+  // illum 6, 7 or 9. A picture of its opacity (map_d, map_Tr, map_opacity) makes it alpha-tested. Other
+  // statements than these and Kd are skipped. If a material is defined several times, it is as little opaque
+  // as any of them says.
   Status read(std::string_view bytes, const std::string& name);
 
   const std::vector<Material>& all() const { return materials_; }
@@ -30,9 +31,9 @@ class MtlMaterials {
 
  private:
   std::vector<Material> materials_;
-  std::unordered_map<std::string, std::int64_t> by_name_;
+  std::map<std::string, std::int64_t> by_name_;
   // By what is left of a name without what may be a comment; -1 for several materials.
-  std::unordered_map<std::string, std::int64_t> by_beginning_;
+  std::map<std::string, std::int64_t> by_beginning_;
 };
 
 // The names of pictures in a file, each as what follows the keyword: options and a name.

@@ -101,9 +101,12 @@ class ObjConverter {
   void addFace(std::uint32_t face) {
     corners_.clear();
     vertices_.clear();
+    bool see_through = false;
     for (std::uint32_t i = file_.faces[face].first_corner; i < file_.faces[face + 1].first_corner; ++i) {
       const std::uint32_t index = file_.corners[i];
       corners_.push_back(file_.vertices[index]);
+      see_through =
+          see_through || std::binary_search(file_.see_through.begin(), file_.see_through.end(), index);
       if (vertex_of_[index] == kNone) {
         vertex_of_[index] = builder_.addVertex(file_.vertices[index]);
       }
@@ -111,14 +114,20 @@ class ObjConverter {
     }
     const PolygonTriangles cut = triangulator_.triangulate(corners_);
     findings_.uncertain_polygons += cut.exact ? 0 : 1;
+    const bool certain = cut.exact && !see_through;
     for (const auto& [a, b, c] : cut.triangles) {
-      builder_.addTriangle(vertices_[a], vertices_[b], vertices_[c], cut.exact);
+      builder_.addTriangle(vertices_[a], vertices_[b], vertices_[c], certain);
     }
   }
 
   // Materials that nothing has are left out.
   MaterialId materialOf(std::uint32_t number, std::uint32_t faces) {
     if (number == ObjFile::kNoMaterial) {
+      // A material may have no name, too.
+      const std::int64_t nameless = default_.valid() ? -1 : materials_.find("");
+      if (nameless >= 0) {
+        default_ = builder_.addMaterial(materials_.all()[static_cast<std::size_t>(nameless)]);
+      }
       if (!default_.valid()) {
         default_ = builder_.addMaterial(undefined("default", Opacity::kOpaque));
       }
@@ -205,7 +214,14 @@ Result<Scene> importObj(std::string_view bytes, const std::string& folder, const
 std::vector<std::string> filesNamedByObj(std::string_view bytes, const std::string& folder) {
   const ObjLibraries libraries = findObjLibraries(librariesOfObj(bytes), folder);
   std::vector<std::string> files = libraries.files;
+  std::uint64_t left = kMostLibraryBytes;  // files that importObj() would refuse are not looked into
   for (const std::string& library : libraries.files) {
+    std::error_code code;
+    const std::uint64_t size = std::filesystem::file_size(library, code);
+    if (code || size > left) {
+      continue;
+    }
+    left -= size;
     const Result<std::string> text = readFile(library);
     for (const std::string& picture : text ? picturesOfMtl(*text) : std::vector<std::string>()) {
       addPossibleNames(picture, folder, files);

@@ -27,8 +27,9 @@ struct ObjFile {
   };
 
   std::vector<Vec3d> vertices;
-  std::vector<std::uint32_t> corners;  // each below vertices.size()
-  std::vector<Face> faces;             // of three corners or more, and one that marks the end
+  std::vector<std::uint32_t> see_through;  // vertices whose colour may be, ascending
+  std::vector<std::uint32_t> corners;      // each below vertices.size()
+  std::vector<Face> faces;                 // of three corners or more, and one that marks the end
   std::vector<Part> parts;             // with faces, and one that marks the end; those of an object in a row
   std::vector<std::string> objects;    // their names
   std::vector<std::string> materials;  // the values of usemtl statements, each once

@@ -71,10 +71,11 @@ class Finder {
   // Devices and pipes, which might never end, are no files here.
   bool addIfThere(std::string_view name) {
     const std::string file = fileNamedInObj(std::string(withoutQuotes(name)), folder_);
-    const auto [known, is_new] = names_.emplace(file, false);
-    if (!is_new) {
-      return known->second;
+    const auto before = names_.find(file);
+    if (before != names_.end() || names_.size() >= kMostNames) {
+      return before != names_.end() && before->second;
     }
+    const auto known = names_.emplace(file, false).first;
     std::error_code code;
     known->second = name.find('\0') == std::string_view::npos && fs::is_regular_file(file, code);
     if (known->second && files_.insert(fs::weakly_canonical(file, code)).second) {
@@ -82,6 +83,8 @@ class Finder {
     }
     return known->second;
   }
+
+  static constexpr std::size_t kMostNames = 10'000;  // that are looked up; others count as missing
 
   const std::string& folder_;
   std::map<std::string, bool> names_;  // whether there is such a file

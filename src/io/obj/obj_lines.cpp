@@ -14,7 +14,8 @@ bool isBlank(char c) {
 
 }  // namespace
 
-ObjStatements::ObjStatements(std::string_view bytes) : text_(bytes) {
+ObjStatements::ObjStatements(std::string_view bytes, Backslash backslash)
+    : text_(bytes), backslash_(backslash) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text_.starts_with(kByteOrderMark)) {
     text_.remove_prefix(kByteOrderMark.size());
@@ -44,7 +45,8 @@ bool ObjStatements::next() {
   while (!atEnd()) {
     line_ = next_line_;
     std::string_view text = nextLine();
-    if (text.ends_with('\\')) {
+    const bool comment = trimmed(text).starts_with('#');
+    if (text.ends_with('\\') && !comment && backslash_ == Backslash::kContinues) {
       joined_.clear();
       while (text.ends_with('\\')) {
         joined_ += text.substr(0, text.size() - 1);

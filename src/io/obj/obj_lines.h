@@ -9,11 +9,14 @@
 
 namespace sightline::io {
 
-// Goes through the statements of a text, which must outlive it. A backslash at the end of a line continues
-// it; lines may end in any way; empty ones, and those that begin with '#', are left out.
+// Goes through the statements of a text, which must outlive it. Lines may end in any way; empty ones, and
+// those that begin with '#', are left out.
 class ObjStatements {
  public:
-  explicit ObjStatements(std::string_view bytes);
+  // In an .obj file, a backslash at the end of a line that is no comment continues it. In an .mtl file it may
+  // be the end of a folder's name.
+  enum class Backslash : std::uint8_t { kContinues, kIsText };
+  explicit ObjStatements(std::string_view bytes, Backslash backslash = Backslash::kContinues);
 
   // Moves to the next statement; false at the end.
   bool next();
@@ -28,6 +31,7 @@ class ObjStatements {
   std::string_view nextLine();
 
   std::string_view text_;
+  Backslash backslash_;
   std::size_t at_ = 0, feed_ = 0;  // where the next line begins; the first line feed from there on
   std::string_view keyword_, value_;
   std::string joined_;  // the lines of a statement that is continued

@@ -1,8 +1,8 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <map>
 #include <optional>
-#include <unordered_map>
 
 #include "src/io/failure.h"
 #include "src/io/obj/obj_file.h"
@@ -42,17 +42,17 @@ class ObjParser {
 
   Status readStatement() {
     const std::string_view keyword = statements_.keyword();
-    if (keyword == "v") {
+    if (isKeyword(keyword, "v")) {
       return readVertex();
     }
-    if (keyword == "f" || keyword == "fo") {  // fo: what f was called in old files
+    if (isKeyword(keyword, "f") || isKeyword(keyword, "fo")) {  // fo: what f was called in old files
       return readFace();
     }
-    if (keyword == "usemtl") {
+    if (isKeyword(keyword, "usemtl")) {
       useMaterial();
-    } else if (keyword == "o") {
+    } else if (isKeyword(keyword, "o")) {
       beginObject(nameWithoutComment(statements_.value()));
-    } else if (keyword == "g") {
+    } else if (isKeyword(keyword, "g")) {
       // A group is an object, unless it goes on.
       const std::string_view group = nameWithoutComment(statements_.value());
       if (group != group_) {
@@ -90,6 +90,10 @@ class ObjParser {
     // Which of them a face may use is known at the end.
     if ((count == 4 || count == 8) && numbers[3] != 1.0) {
       weighted_.try_emplace(static_cast<std::uint32_t>(file_.vertices.size()), statements_.line());
+    }
+    // The last one of seven may be the opacity, or the blue of a colour that follows a weight.
+    if (count >= 7 && numbers[count - 1] < 1.0) {
+      file_.see_through.push_back(static_cast<std::uint32_t>(file_.vertices.size()));
     }
     if (file_.vertices.size() >= kMost) {
       return failureHere("the file has more than {} vertices", kMost);
@@ -214,8 +218,8 @@ class ObjParser {
   ObjFile file_;
   ObjFile::Part part_;
   std::string group_;
-  std::unordered_map<std::string, std::uint32_t> numbers_;     // of materials
-  std::unordered_map<std::uint32_t, std::uint32_t> weighted_;  // vertices with weights, and their lines
+  std::map<std::string, std::uint32_t> numbers_;     // of materials
+  std::map<std::uint32_t, std::uint32_t> weighted_;  // vertices with weights, and their lines
 };
 
 }  // namespace

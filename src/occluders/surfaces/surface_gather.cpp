@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kTrianglesOfChunk = 16384;
 constexpr double kRounding = 1e-6;  // far above that of cosines, and of a plane through single precision
 constexpr std::uint32_t kUngathered = 0xffffffffu;
-// At an edge with more triangles, a part looks for more of them only once.
+// At an edge with more triangles than this, a part looks for more of them only once.
 constexpr std::size_t kManySides = 64;
 
 std::uint32_t clamped(std::uint32_t triangles) {

@@ -20,7 +20,7 @@ namespace sightline::pvs {
 
 // Version of the bake method; increase it whenever the same input would give other cells, or the same
 // question another answer.
-inline constexpr std::uint32_t kBakeVersion = 16;
+inline constexpr std::uint32_t kBakeVersion = 17;
 
 // Whether surfaces are to hide as much as they can, in a longer time: with small panels, and asked again
 // without what keeps them from it. So it is where narrowing or dividing is asked for.

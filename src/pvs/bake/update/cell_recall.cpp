@@ -154,9 +154,9 @@ std::optional<CellRecall::NodeAnswer> CellRecall::node(std::uint32_t number, con
 
 // An answer depends on the panels that the lines of sight of the question meet, and on those that were
 // followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
-// The order in which they are followed, and with it which objects are left out, depends on their content and
-// on their steps to a border (PanelRank), which are compared with them. Where narrowing or dividing decided,
-// that may be anywhere in the shaft, and decided_in is all of space.
+// The order in which they are followed, and with it which objects are left out, depends on their content, on
+// their steps to a border (PanelRank) and on the order of their edges, which are compared with them. Where
+// narrowing or dividing decided, that may be anywhere in the shaft, and decided_in is all of space.
 bool CellRecall::holds(std::uint32_t number, const CellBox& region, const Box& decided_in) const {
   const Box& box = scene_.boxes.nodes[number].bounds;
   const Vec3d start = FusedOcclusion::startOf(region);
