@@ -5,6 +5,7 @@
 #include <array>
 
 #include "fuzz/readers/fuzz_input.h"
+#include "fuzz/readers/sound_scene.h"
 #include "src/io/assimp.h"
 
 using namespace sightline;
@@ -15,20 +16,6 @@ namespace {
 constexpr std::array kFormats{".nff", ".ply", ".stl",  ".off", ".dae", ".fbx", ".3ds", ".x",
                               ".ac",  ".lwo", ".ms3d", ".md2", ".md3", ".smd", ".b3d", ".ase"};
 const io::ImportLimits kLimits{.triangles = 100'000, .objects = 10'000};
-
-void requireSound(const Scene& scene) {
-  require(scene.objects.size() == scene.object_names.size());
-  std::size_t next_index = 0;
-  for (const Object& object : scene.objects) {
-    require(object.first_index == next_index && object.index_count > 0 && object.index_count % 3 == 0);
-    require(object.material.value < scene.materials.size() && object.bounds.wellFormed());
-    next_index += object.index_count;
-  }
-  require(next_index == scene.indices.size());
-  for (const std::uint32_t index : scene.indices) {
-    require(index < scene.positions.size());
-  }
-}
 
 }  // namespace
 

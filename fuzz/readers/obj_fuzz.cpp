@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fuzz/readers/fuzz_input.h"
+#include "fuzz/readers/sound_scene.h"
 #include "src/io/obj/obj.h"
 
 using namespace sightline;
@@ -12,21 +13,6 @@ using namespace sightline::fuzz;
 namespace {
 
 const io::ImportLimits kLimits{.triangles = 100'000, .objects = 10'000, .name_bytes = 1 << 20};
-
-void requireSound(const Scene& scene) {
-  require(scene.objects.size() == scene.object_names.size());
-  std::size_t next_index = 0;
-  for (const Object& object : scene.objects) {
-    require(object.first_index == next_index && object.index_count > 0 && object.index_count % 3 == 0);
-    require(object.material.value < scene.materials.size() && object.bounds.wellFormed());
-    next_index += object.index_count;
-  }
-  require(next_index == scene.indices.size());
-  require(std::all_of(scene.indices.begin(), scene.indices.end(),
-                      [&](std::uint32_t index) { return index < scene.positions.size(); }));
-  require(std::all_of(scene.positions.begin(), scene.positions.end(),
-                      [](const Vec3f& position) { return isFinite(position); }));
-}
 
 }  // namespace
 
