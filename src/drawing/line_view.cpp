@@ -27,8 +27,8 @@ bool isPageSide(double value) {
   return value >= kSmallestPage && value <= kLargestPage;
 }
 
-bool isDirection(Vec3d axis) {
-  return scene::makeUnit(axis);
+bool hasDirections(View view) {
+  return scene::makeAxesUnit(view);
 }
 
 double nearOf(const View& view) {
@@ -42,8 +42,7 @@ bool isDrawable(const View& view, double page_height) {
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
          std::isfinite(view.z_near) && view.z_near >= 0.0 && nearOf(view) < view.z_far &&
-         isShift(view.shift_x) && isShift(view.shift_y) && isFinite(view.eye) && isDirection(view.right) &&
-         isDirection(view.up) && isDirection(view.forward);
+         isShift(view.shift_x) && isShift(view.shift_y) && isFinite(view.eye) && hasDirections(view);
 }
 
 bool narrow(double at_0, double at_1, double& from, double& to) {
@@ -65,9 +64,7 @@ bool narrow(double at_0, double at_1, double& from, double& to) {
 LineView::LineView(const View& view, double page_height)
     : view_(view), drawable_(isDrawable(view, page_height)) {
   // The basis may be left-handed: the picture is mirrored then.
-  scene::makeUnit(view_.right);
-  scene::makeUnit(view_.up);
-  scene::makeUnit(view_.forward);
+  scene::makeAxesUnit(view_);
   view_.z_near = nearOf(view);
   const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   const double half_width = half_height * view.aspect;

@@ -22,7 +22,7 @@ class LineView {
   LineView() = default;  // a view that is not drawable and shows nothing
   LineView(const View& view, double page_height);
 
-  // With axes of unit length, and with z_near > 0 in perspective.
+  // Its axes have unit length, and z_near > 0 in perspective.
   const View& view() const { return view_; }
   bool drawable() const { return drawable_; }
 

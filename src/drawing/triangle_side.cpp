@@ -7,9 +7,7 @@ namespace sightline::drawing {
 TriangleSides::TriangleSides(const View& view) : orthographic_(view.orthographic), eye_(view.eye) {
   if (orthographic_) {
     View unit = view;
-    scene::makeUnit(unit.right);
-    scene::makeUnit(unit.up);
-    scene::makeUnit(unit.forward);
+    scene::makeAxesUnit(unit);
     sight_ = scene::sightDirection(unit);
   }
 }

@@ -102,7 +102,7 @@ int PolygonTriangulator::turn(std::uint32_t a, std::uint32_t b, std::uint32_t c)
   return seen_.side * geometry::orientation(lattice_, seen_.axis, at_[a], at_[b], at_[c]);
 }
 
-// As seen along the axis.
+// Whether two corners have the same place as seen along the axis.
 bool PolygonTriangulator::same(std::uint32_t a, std::uint32_t b) const {
   const int u = (seen_.axis + 1) % 3, v = (seen_.axis + 2) % 3;
   return at_[a][u] == at_[b][u] && at_[a][v] == at_[b][v];
@@ -249,8 +249,8 @@ bool PolygonTriangulator::isEar(const Ear& ear, bool may_touch) {
     return false;
   }
   for (std::uint32_t corner = after_[ear.after]; corner != ear.before; corner = after_[corner]) {
-    // Of a chain that enters the triangle, the corner that comes nearest to the tip is not convex, unless
-    // another edge begins there too.
+    // If a chain of edges enters the triangle, its corner nearest to the tip is not convex, unless another
+    // edge begins there too.
     if (convex_[corner] != 0 && repeated_[corner] == 0) {
       continue;
     }

@@ -60,12 +60,17 @@ bool makeUnit(Vec3d& axis) {
   return isFinite(axis) && dot(axis, axis) > 0.5;
 }
 
+bool makeAxesUnit(View& view) {
+  const bool right = makeUnit(view.right), up = makeUnit(view.up), forward = makeUnit(view.forward);
+  return right && up && forward;
+}
+
 const char* makeUsable(View& view) {
   if (!isFinite(view.eye)) {
     return "View::eye must be finite";
   }
   View usable = view;
-  if (!makeUnit(usable.right) || !makeUnit(usable.up) || !makeUnit(usable.forward)) {
+  if (!makeAxesUnit(usable)) {
     return "View::right, up and forward must be finite and not zero; setOrientation() makes them";
   }
   if (std::abs(dot(usable.right, usable.up)) > kSkewCosine ||

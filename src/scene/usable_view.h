@@ -7,6 +7,9 @@ namespace sightline::scene {
 // Normalises an axis unless it has unit length up to single precision. Returns false if it has no direction.
 bool makeUnit(Vec3d& axis);
 
+// Normalises right, up and forward in the same way. A left-handed basis stays one.
+bool makeAxesUnit(View& view);
+
 // Prepares a caller's view as validate() describes; allocates nothing, so it can run in every frame. Returns
 // null, or a static text that says what is wrong with the view, which is then unchanged.
 const char* makeUsable(View& view);

@@ -235,7 +235,7 @@ TEST_F(Files, PlyWithAlphaIsSeeThrough) {
   EXPECT_EQ(opacityWith(colour + alpha, alpha, "255", " 60"), Opacity::kBlended);
 }
 
-// Of a strip, Assimp would hand over its last triangle alone, and its box would not hold what is shown.
+// Assimp would hand over only the last triangle of a strip, and its box would not hold what is shown.
 TEST_F(Files, PlyWithStripsIsRefused) {
   const Result<Scene> scene = importScene(folder.write(
       "strip.ply",

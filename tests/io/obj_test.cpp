@@ -34,13 +34,13 @@ class Obj : public testing::Test {
     EXPECT_EQ(error.find('\n'), std::string::npos);
     return error;
   }
-  // Of the only object.
+  // Returns the material of the only object.
   Material materialOf(const std::string& text) {
     const Scene scene = read(text);
     EXPECT_EQ(scene.objects.size(), 1u) << text;
     return scene.objects.empty() ? Material() : scene.materials.at(scene.objects[0].material.value);
   }
-  // Of a face with a material of this .mtl file.
+  // Returns the material of a face whose .mtl file has these statements.
   Material materialIn(const std::string& statements) {
     folder_.write("a.mtl", "newmtl m\n" + statements + "\n");
     return materialOf("mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\n");

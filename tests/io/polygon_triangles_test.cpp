@@ -235,7 +235,7 @@ struct Ways {
   bool exact = false;  // corners that lie on edges do so when placed
 };
 
-// In both orientations.
+// Polygons are cut in both orientations.
 void expectCutExactly(Random& random, Ring ring, const Cells& cells, const Ways& ways) {
   for (std::size_t first = 0; first < (ways.from_each_corner ? ring.size() : 1); ++first) {
     for (const bool reversed : {false, true}) {

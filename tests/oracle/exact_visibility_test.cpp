@@ -132,7 +132,8 @@ TEST(ExactVisibility, OrthographicRaysAreParallel) {
   EXPECT_EQ(f.reached(64), Ids({kFirst, kThird}));
 }
 
-// Of such a picture, a direction tells where it meets the walls only to a part of the picture's size.
+// A direction is rounded to a part of the picture's size, so it hardly tells where it meets small walls in a
+// high picture.
 TEST(ExactVisibility, PicturesOfAnyHeightShowTheSame) {
   for (const double height : {0.1, 1e3, 1e9, 1e12, 1e14, 1e16}) {
     for (int turn = 0; turn < 20; ++turn) {

@@ -97,7 +97,7 @@ TEST(Camera, OrientationSurvivesLookingAlongTheHint) {
   }
 }
 
-// From an ordinary hint to one that cannot be told from the direction; `off` is in radians.
+// Hints go from an ordinary one to one that cannot be told from the direction; `off` is in radians.
 TEST(Camera, OrientationIsOrthonormalHoweverNearTheHintIs) {
   constexpr double kFewRoundings = 0x1p-49;
   std::mt19937 random(11);

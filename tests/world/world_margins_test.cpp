@@ -149,7 +149,7 @@ TEST(WorldMargins, AJoinOfRoundedPositionsHidesOnlyIfThatIsAllowed) {
   }
 }
 
-// As where a level is left while a thread still prepares its join.
+// A level may be left while a thread still prepares its join.
 TEST(WorldMargins, AJoinOfAnotherWorldHidesNothing) {
   Mat4 behind;
   behind(2, 3) = -14.0;

@@ -8,7 +8,7 @@
 
 namespace sightline::io {
 
-// Where one object's triangles are placed.
+// Says where the triangles of one object are placed.
 struct Placement {
   Mat4 world_from_node;                     // or from an instance of its mesh
   std::span<const ActiveTarget> targets{};  // morph targets that displace its vertices

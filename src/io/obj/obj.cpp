@@ -1,5 +1,6 @@
 #include "src/io/obj/obj.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <new>

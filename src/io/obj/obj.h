@@ -17,7 +17,7 @@ namespace sightline::io {
 
 // What the file leaves open.
 struct ObjFindings {
-  std::uint64_t uncertain_polygons = 0;        // PolygonTriangles::exact; their objects are never occluders
+  std::uint64_t uncertain_polygons = 0;        // those that are not PolygonTriangles::exact
   std::uint64_t faces_without_material = 0;    // that have a material which is not defined
   std::vector<std::string> missing_materials;  // of these faces
   std::vector<std::string> missing_libraries;  // .mtl files that are not there

@@ -23,7 +23,7 @@ ObjStatements::ObjStatements(std::string_view bytes, Backslash backslash)
   feed_ = std::min(text_.find('\n'), text_.size());
 }
 
-// Up to a line feed, a carriage return, or both.
+// Returns the text up to a line feed, a carriage return, or both, and moves behind them.
 std::string_view ObjStatements::nextLine() {
   ++next_line_;
   if (feed_ < at_) {
