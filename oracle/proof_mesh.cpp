@@ -48,7 +48,8 @@ void ProofMesh::gather() {
         (k == 0 ? t.at.a : k == 1 ? t.at.b : t.at.c) = Vec3d(p);
       }
       if (finite && t.vertex[0] != t.vertex[1] && t.vertex[1] != t.vertex[2] && t.vertex[2] != t.vertex[0]) {
-        number_of.emplace(object.first_index + i, static_cast<std::uint32_t>(triangles.size()));
+        number_of.emplace(triangleKey(ObjectId(o), object.first_index + i),
+                          static_cast<std::uint32_t>(triangles.size()));
         triangles.push_back(t);
       }
     }

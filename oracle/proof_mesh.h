@@ -68,7 +68,7 @@ struct ProofMesh {
   TriangleTree tree;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first_of;                         // by object: its first triangle
-  std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // by first index in the scene
+  std::unordered_map<std::uint64_t, std::uint32_t> number_of;  // by triangleKey()
   std::vector<Edge> edges;
   std::vector<std::uint32_t> at_edges;  // triangles
   // By sheet: those that it is joined with at the edges that have partners.

@@ -91,7 +91,7 @@ class RegionProof::Attempt {
     for (std::size_t line = 0; line < kSightLines; ++line) {
       const Vec3d from = starts_[line], to = ends_[line];
       mesh_.tree.alongRay(from, to - from, 0.0, [&](const TriangleTree::Node& leaf) {
-        const auto found = mesh_.number_of.find(leaf.first_index);
+        const auto found = mesh_.number_of.find(triangleKey(leaf.object, leaf.first_index));
         if (found == mesh_.number_of.end() || leaf.object == claim_.target ||
             (claim_.by.valid() && leaf.object != claim_.by)) {
           return;

@@ -10,6 +10,11 @@
 
 namespace sightline {
 
+// Tells an object's triangle from all others of the scene, also where several objects have the same indices.
+inline std::uint64_t triangleKey(ObjectId object, std::uint32_t first_index) {
+  return std::uint64_t{object.value} << 32 | first_index;
+}
+
 class TriangleTree {
  public:
   static constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();

@@ -63,7 +63,7 @@ void VisibilityProof::beginFigures() {
 }
 
 VisibilityProof::Appearance& VisibilityProof::appearance(const Triangle& triangle) {
-  const auto [entry, is_new] = appearances_.try_emplace(triangle.first_index);
+  const auto [entry, is_new] = appearances_.try_emplace(triangleKey(triangle.object, triangle.first_index));
   Appearance& appearance = entry->second;
   if (!is_new) {
     return appearance;
@@ -317,8 +317,7 @@ bool VisibilityProof::isBefore(const RayHit& hit, const Target& target) const {
 }
 
 void VisibilityProof::addBlocker(const Triangle& blocker) {
-  const auto same = [&](const Triangle& other) { return other.first_index == blocker.first_index; };
-  if (std::none_of(blockers_.begin(), blockers_.end(), same)) {
+  if (std::find(blockers_.begin(), blockers_.end(), blocker) == blockers_.end()) {
     blockers_.push_back(blocker);
   }
 }
@@ -502,7 +501,7 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
                        });
   const bool has_far = std::isfinite(space_.view().z_far);
   for (const std::uint32_t first_index : own) {
-    const Depth depth = appearances_.at(first_index).depth;
+    const Depth depth = appearances_.at(triangleKey(object, first_index)).depth;
     const bool in_view = !has_far || figures_.side(figures_.lineWhereNearer(depth, far_), direction) >= 0;
     const bool hidden = std::any_of(opaque.begin(), opaque.end(), [&](Depth blocker) {
       return blocker != depth && figures_.side(figures_.lineWhereNearer(blocker, depth), direction) > 0;

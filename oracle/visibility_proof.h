@@ -56,7 +56,8 @@ class VisibilityProof {
 
   struct Triangle {
     std::uint32_t first_index = kNone;
-    ObjectId object;
+    ObjectId object;  // several may have the same indices
+    friend bool operator==(const Triangle&, const Triangle&) = default;
   };
   // A triangle as it appears in the image: on its side of these lines, borders included.
   struct Appearance {
@@ -138,7 +139,7 @@ class VisibilityProof {
   ImageFigures figures_;
   ImagePolygon picture_;
   Depth near_ = 0, far_ = 0;
-  std::unordered_map<std::uint32_t, Appearance> appearances_;  // by first index
+  std::unordered_map<std::uint64_t, Appearance> appearances_;  // by triangleKey()
   std::vector<ImagePolygon> pieces_;                           // still to be covered
   std::vector<ImagePolygon> parts_, next_parts_;               // of one piece
   std::vector<RayHit> hits_;

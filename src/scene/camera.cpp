@@ -85,10 +85,15 @@ Frustum frustumOf(const View& given) {
     frustum.planes.fill({Vec3d(), 1.0});
     return frustum;
   }
-  // Moved outwards by more than the offset is rounded, and the normal as far as the eye's coordinates reach.
-  const auto through = [&view](const Vec3d& normal, const Vec3d& point) {
-    const Vec3d unit = normalized(normal), size = abs(view.eye) + abs(point);
-    return Plane{unit, -dot(unit, point) + 0x1p-49 * (size.x + size.y + size.z)};
+  // Bounds the points p with dot(normal, p - eye) >= distance. The axes are unit vectors to single precision
+  // only, so the plane's own distance from the eye is another one. Moved outwards by more than the offset is
+  // rounded, and the normal as far as the eye's coordinates reach.
+  const auto beyond = [&view](const Vec3d& normal, double distance) {
+    const double scale = 1.0 / length(normal);
+    const Vec3d unit = normal * scale, size = abs(view.eye);
+    const double from_eye = distance * scale;
+    return Plane{unit,
+                 -dot(unit, view.eye) - from_eye + 0x1p-48 * (size.x + size.y + size.z + std::abs(from_eye))};
   };
   // From the forward axis to the borders: tangents of angles, or metres in an orthographic view.
   const double half_height = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
@@ -96,39 +101,40 @@ Frustum frustumOf(const View& given) {
   const double left = half_width * (1.0 - view.shift_x), right = half_width * (1.0 + view.shift_x);
   const double down = half_height * (1.0 - view.shift_y), up = half_height * (1.0 + view.shift_y);
   if (view.orthographic) {
-    frustum.planes[0] = through(view.right, view.eye - view.right * left);
-    frustum.planes[1] = through(-view.right, view.eye + view.right * right);
-    frustum.planes[2] = through(view.up, view.eye - view.up * down);
-    frustum.planes[3] = through(-view.up, view.eye + view.up * up);
+    frustum.planes[0] = beyond(view.right, -left);
+    frustum.planes[1] = beyond(-view.right, -right);
+    frustum.planes[2] = beyond(view.up, -down);
+    frustum.planes[3] = beyond(-view.up, -up);
   } else {
-    frustum.planes[0] = through(view.right + view.forward * left, view.eye);
-    frustum.planes[1] = through(view.forward * right - view.right, view.eye);
-    frustum.planes[2] = through(view.up + view.forward * down, view.eye);
-    frustum.planes[3] = through(view.forward * up - view.up, view.eye);
+    frustum.planes[0] = beyond(view.right + view.forward * left, 0.0);
+    frustum.planes[1] = beyond(view.forward * right - view.right, 0.0);
+    frustum.planes[2] = beyond(view.up + view.forward * down, 0.0);
+    frustum.planes[3] = beyond(view.forward * up - view.up, 0.0);
   }
-  frustum.planes[4] = through(view.forward, view.eye + view.forward * view.z_near);
+  frustum.planes[4] = beyond(view.forward, view.z_near);
   // An infinite offset would make the plane NaN; this one is beyond all boxes.
   constexpr double kFarthest = 0x1p500;
-  frustum.planes[5] = through(-view.forward, view.eye + view.forward * std::min(view.z_far, kFarthest));
+  frustum.planes[5] = beyond(-view.forward, -std::min(view.z_far, kFarthest));
   return frustum;
 }
 
 double nearDistance(const View& given) {
   View view = given;
-  scene::makeUsable(view);
-  if (view.orthographic) {
-    // The rays of an orthographic view start at any distance.
+  // The rays of an orthographic view start at any distance, and nothing is known of those of an invalid one.
+  if (scene::makeUsable(view) != nullptr || view.orthographic) {
     return std::numeric_limits<double>::infinity();
   }
-  // The corners of the near plane are at near * (forward + x right + y up). All four are measured, because
-  // axes that are not quite perpendicular make their distances differ. The result is rounded up.
+  // The corners of the near plane are the points q from the eye with dot(forward, q) = near, dot(right, q) =
+  // near * x and dot(up, q) = near * y. Where axes are not quite unit vectors, or not quite perpendicular,
+  // that is not near * (forward + x right + y up), and the four distances differ. The result is rounded up.
+  const Vec3d along_x = cross(view.up, view.forward), along_y = cross(view.forward, view.right);
+  const Vec3d ahead = cross(view.right, view.up);
+  const double volume = dot(view.right, along_x);
   const double half_width = view.tan_half_fovy * view.aspect, half_height = view.tan_half_fovy;
-  const double x = half_width * (1.0 + std::abs(view.shift_x));
-  const double y = half_height * (1.0 + std::abs(view.shift_y));
-  double farthest = std::sqrt(1.0 + x * x + y * y);
+  double farthest = 0.0;
   for (const double side : {half_width * (view.shift_x - 1.0), half_width * (view.shift_x + 1.0)}) {
     for (const double height : {half_height * (view.shift_y - 1.0), half_height * (view.shift_y + 1.0)}) {
-      farthest = std::max(farthest, length(view.forward + view.right * side + view.up * height));
+      farthest = std::max(farthest, length(ahead + along_x * side + along_y * height) / std::abs(volume));
     }
   }
   return view.z_near * farthest * (1.0 + 0x1p-48);

@@ -135,6 +135,25 @@ TEST(RegionSearch, SeesNothingBehindAWall) {
   expectNotSeen(claim);
 }
 
+TEST(RegionSearch, AnOpenDoorWithTheIndicesOfAWallLeavesTheWallClosed) {
+  Claim claim;
+  addWall(claim.scene, claim.opaque, -5, -100, 100, -100, 100);
+  Object door = claim.scene.objects.back();
+  claim.addObject(-10, -5, 5, -5, 5);
+  for (const OccluderMark mark : {OccluderMark::kNever, OccluderMark::kAutomatic}) {
+    std::swap(claim.scene.objects.front(), door);
+    claim.scene.objects.front().mark = mark;
+    door.mark = OccluderMark::kAutomatic;
+    if (mark == OccluderMark::kNever) {
+      claim.scene.objects.push_back(door);
+      claim.scene.object_names.push_back("a wall with the door's indices");
+    } else {
+      claim.scene.objects.back().mark = OccluderMark::kNever;
+    }
+    expectNotSeen(claim);
+  }
+}
+
 TEST(RegionSearch, WhatTheNearPlaneClipsHidesNothing) {
   Claim claim;
   addWall(claim.scene, claim.opaque, -0.5f, -100, 100, -100, 100);

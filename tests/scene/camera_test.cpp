@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -195,6 +196,39 @@ TEST(Camera, NoBoxThatReachesIntoTheFrustumIsOutsideHoweverFarAwayTheEyeIs) {
   EXPECT_GT(inside, 2000u);
 }
 
+// Axes count as unit vectors if their squares differ from 1 by at most 2^-20. Distances along such an axis
+// are dot(axis, p - eye), as they are in clip space and for all methods.
+TEST(Camera, BordersLieWhereAxesOfNearlyUnitLengthPutThem) {
+  for (const double square : {1.0 - 0.99 * 0x1p-20, 1.0, 1.0 + 0.99 * 0x1p-20}) {
+    const double size = std::sqrt(square), border = 1000.0 / size;
+    const auto side = [](const View& view, float distance, const Vec3f& along) {
+      const Vec3f at = along * distance, some(1, 1, 1);
+      const Vec3f beside = some - Vec3f(abs(Vec3d(along)));
+      std::uint8_t mask = kAllFrustumPlanes;
+      return classify(frustumOf(view), Box{at - beside, at + beside}, mask);
+    };
+    const auto less = std::nextafter(static_cast<float>(border), 0.0f), more = less * (1.0f + 0x1p-20f);
+    ASSERT_LE(size * double{less}, 1000.0);
+    View view{.right = {1, 0, 0}, .up = {0, 1, 0}, .forward = {0, 0, -size}};
+    view.z_far = 1000.0;
+    EXPECT_NE(side(view, less, {0, 0, -1}), FrustumSide::kOutside) << size;
+    EXPECT_EQ(side(view, more, {0, 0, -1}), FrustumSide::kOutside) << size;
+    view.z_far = 1e5;
+    view.z_near = 1000.0;
+    EXPECT_EQ(side(view, less * (1.0f - 0x1p-20f), {0, 0, -1}), FrustumSide::kOutside) << size;
+    EXPECT_NE(side(view, more, {0, 0, -1}), FrustumSide::kOutside) << size;
+
+    View parallel{.right = {size, 0, 0}, .up = {0, size, 0}, .forward = {0, 0, -1}, .orthographic = true};
+    parallel.ortho_height = 2000.0;
+    parallel.aspect = 1.0;
+    parallel.z_near = 0.0;
+    for (const Vec3f& along : {Vec3f(1, 0, 0), Vec3f(-1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, -1, 0)}) {
+      EXPECT_NE(side(parallel, less, along), FrustumSide::kOutside) << size;
+      EXPECT_EQ(side(parallel, more, along), FrustumSide::kOutside) << size;
+    }
+  }
+}
+
 TEST(Camera, FrustumPlanesHaveUnitNormals) {
   std::mt19937 random(3);
   for (int i = 0; i < 100; ++i) {
@@ -278,6 +312,52 @@ TEST(Camera, NearDistanceReachesTheCornersOfTheNearPlane) {
     EXPECT_GE(nearDistance(view), farthest) << "seed " << seed;
     EXPECT_LE(nearDistance(view), farthest * (1.0 + 1e-12)) << "seed " << seed;
   }
+}
+
+// The point p with dot(rows[i], p) = values[i], by elimination.
+Vec3d solved(std::array<Vec3d, 3> rows, Vec3d values) {
+  for (int i = 0; i < 3; ++i) {
+    const double scale = 1.0 / rows[static_cast<std::size_t>(i)][i];
+    rows[static_cast<std::size_t>(i)] = rows[static_cast<std::size_t>(i)] * scale;
+    values[i] *= scale;
+    for (int k = 0; k < 3; ++k) {
+      if (k != i) {
+        const double times = rows[static_cast<std::size_t>(k)][i];
+        values[k] -= times * values[i];
+        rows[static_cast<std::size_t>(k)] =
+            rows[static_cast<std::size_t>(k)] - rows[static_cast<std::size_t>(i)] * times;
+      }
+    }
+  }
+  return values;
+}
+
+TEST(Camera, NearDistanceReachesTheCornersWhereAxesAreNotQuitePerpendicular) {
+  std::size_t views = 0;
+  for (std::uint32_t seed = 0; seed < 2000; ++seed) {
+    std::mt19937 random(seed);
+    View view;
+    setOrientation(view, Vec3d(0.1, 0.2, -1) + randomVector(random, 0.1), {0, 1, 0});
+    for (Vec3d* axis : {&view.right, &view.up, &view.forward}) {
+      *axis = *axis + randomVector(random, 4e-7);
+    }
+    const Result<View> usable = validate(view);
+    if (!usable || usable->forward != view.forward || usable->right != view.right || usable->up != view.up) {
+      continue;
+    }
+    views += 1;
+    double farthest = 0.0;
+    for (const double x : {-1.0, 1.0}) {
+      for (const double y : {-1.0, 1.0}) {
+        const Vec3d distances{x * view.tan_half_fovy * view.aspect, y * view.tan_half_fovy, 1.0};
+        farthest =
+            std::max(farthest, view.z_near * length(solved({view.right, view.up, view.forward}, distances)));
+      }
+    }
+    EXPECT_GE(nearDistance(view), farthest * (1.0 - 1e-14)) << "seed " << seed;
+    EXPECT_LE(nearDistance(view), farthest * (1.0 + 1e-13)) << "seed " << seed;
+  }
+  EXPECT_GT(views, 200u);
 }
 
 TEST(Camera, NearDistanceOfAnOrthographicViewIsInfinite) {

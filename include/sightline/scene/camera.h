@@ -55,7 +55,7 @@ Frustum frustumOf(const View& view);
 
 // Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a
 // corner of the near plane; the farthest one), rounded up. Infinite for an orthographic view, whose rays
-// start anywhere.
+// start anywhere, and for one that validate() rejects.
 double nearDistance(const View& view);
 
 struct CameraFrame {
