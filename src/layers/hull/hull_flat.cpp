@@ -167,11 +167,12 @@ ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
   // Error of distances from the frame's line and plane.
   const double rounding = frame.extent * 0x1p-48;
   ConvexHull hull;
-  hull.dimension = std::min(frame.dimension, 2);
   if (frame.dimension == 0) {
+    hull.dimension = 0;
     setRing(hull, points, {0}, numbers);
     hull.slack = 2.0 * kRoundUp * frame.extent;
   } else if (frame.dimension == 1) {
+    hull.dimension = 1;
     setRing(hull, points, segmentEnds(points, frame), numbers);
     hull.slack = 2.0 * (frame.off_line + rounding);
   } else {
@@ -187,6 +188,9 @@ ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
       ring.push_back(p.number);
     }
     setRing(hull, points, ring, numbers);
+    // Of a polygon that is hardly wider than the tolerance, only the two ends of the longest chord may be
+    // left. All points are as close to their segment as they would be to a polygon.
+    hull.dimension = ring.size() > 2 ? 2 : 1;
     hull.slack = kSqrt3 * (4.0 * (frame.off_plane + rounding) + left_out);
   }
   return hull;
