@@ -6,9 +6,7 @@ namespace sightline::drawing {
 
 TriangleSides::TriangleSides(const View& view) : orthographic_(view.orthographic), eye_(view.eye) {
   if (orthographic_) {
-    View unit = view;
-    scene::makeAxesUnit(unit);
-    sight_ = scene::sightDirection(unit);
+    sight_ = scene::sightDirection(scene::withUnitAxes(view));
   }
 }
 

@@ -43,8 +43,7 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
 
 Mat4 clipFromScene(const View& view) {
   Mat4 view_from_scene;
-  View unit = view;
-  scene::makeAxesUnit(unit);  // not makeUsable(): the picture of a left-handed view is mirrored
+  const View unit = scene::withUnitAxes(view);  // not makeUsable(): a left-handed view's picture is mirrored
   const Vec3d axes[3] = {unit.right, unit.up, -unit.forward};
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {

@@ -65,6 +65,16 @@ bool makeAxesUnit(View& view) {
   return right && up && forward;
 }
 
+View withUnitAxes(const View& view) {
+  View unit = view;
+  makeAxesUnit(unit);
+  return unit;
+}
+
+bool isLeftHanded(const View& view) {
+  return dot(cross(view.right, view.up), view.forward) > 0.0;
+}
+
 const char* makeUsable(View& view) {
   if (!isFinite(view.eye)) {
     return "View::eye must be finite";
@@ -82,8 +92,7 @@ const char* makeUsable(View& view) {
     return fault;
   }
   // A mirrored view shows the same objects.
-  const bool left_handed = dot(cross(usable.right, usable.up), usable.forward) > 0.0;
-  if (left_handed) {
+  if (isLeftHanded(usable)) {
     usable.right = -usable.right;
     usable.shift_x = -usable.shift_x;
   }

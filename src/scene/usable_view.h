@@ -9,6 +9,11 @@ bool makeUnit(Vec3d& axis);
 
 // Normalises right, up and forward in the same way. A left-handed basis stays one.
 bool makeAxesUnit(View& view);
+// The same for a copy. An axis without a direction stays as it is.
+View withUnitAxes(const View& view);
+
+// Whether right, up and forward, of unit length, are a left-handed basis: the picture is mirrored.
+bool isLeftHanded(const View& view);
 
 // Prepares a caller's view as validate() describes; allocates nothing, so it can run in every frame. Returns
 // null, or a static text that says what is wrong with the view, which is then unchanged.

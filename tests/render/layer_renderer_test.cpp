@@ -207,6 +207,50 @@ TEST_F(LayerRendererTest, DepthsAreThoseOfRays) {
   }
 }
 
+// A view whose axes have other lengths and the same directions.
+View stretched(View view, double right, double up, double forward) {
+  view.right = view.right * right;
+  view.up = view.up * up;
+  view.forward = view.forward * forward;
+  return view;
+}
+
+TEST_F(LayerRendererTest, LengthsOfAxesDoNotMatter) {
+  SceneMaker maker;
+  maker.box({-1.0f, -0.9f, -1.0f}, {1.1f, 1.0f, 8.5f}, kRed);  // close to the eye: it covers most
+  maker.wall(0.5, 3.0, kGlass);
+  LayerRenderer layers = layersOf(maker.scene);
+  Renderer renderer = rendererOf(maker.scene, kWidth, kHeight);
+  const std::vector<ObjectId> all = allOf(maker.scene);
+  const ObjectId glass(1u);
+  for (const bool orthographic : {false, true}) {
+    View view = testView();
+    view.orthographic = orthographic;
+    view.shift_x = 0.25;
+    for (const LensPoint& lens : {LensPoint{}, LensPoint{.right = 0.4, .up = -0.3, .focus = 7.0}}) {
+      const LayerDraw how{.peel = true, .depths = true, .lens = lens}, hidden{.hidden = true, .lens = lens};
+      const LayerImage expected = drawn(layers, view, all, how);
+      layers.hideBehind(view, all, lens);
+      const LayerImage expected_hidden = drawn(layers, view, {&glass, 1}, hidden);
+      LayerImage expected_sky, sky;
+      layers.drawSky(view, expected_sky);
+      for (const double scale : {1e-100, 0.01, 3.0, 1e100}) {
+        for (const View& other :
+             {stretched(view, scale, 1, 1), stretched(view, 1, scale, 1), stretched(view, 1, 1, scale)}) {
+          const LayerImage image = drawn(layers, other, all, how);
+          EXPECT_EQ(image.pixels, expected.pixels) << scale;
+          EXPECT_EQ(image.depths, expected.depths) << scale;
+          layers.hideBehind(other, all, lens);
+          EXPECT_EQ(drawn(layers, other, {&glass, 1}, hidden).pixels, expected_hidden.pixels) << scale;
+          layers.drawSky(other, sky);
+          EXPECT_EQ(sky.pixels, expected_sky.pixels) << scale;
+          EXPECT_EQ(renderer.draw(other, all), renderer.draw(view, all)) << scale;
+        }
+      }
+    }
+  }
+}
+
 TEST_F(LayerRendererTest, APixelIsTheMeanOfItsSamplesAndItsDepthTheNearest) {
   SceneMaker maker = opaqueScene(5);
   for (Object& object : maker.scene.objects) {

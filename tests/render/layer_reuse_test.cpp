@@ -412,6 +412,26 @@ TEST_F(LayerReuseTest, DepthsAndPointsOfALensAreDrawnEachTime) {
   }
 }
 
+TEST_F(LayerReuseTest, LengthsOfAxesDoNotMatter) {
+  maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
+  for (const bool orthographic : {false, true}) {
+    Reused reused(maker.scene, {.guard_px = 4}), other(maker.scene, {.guard_px = 4});
+    for (int frame = 0; frame < 6; ++frame) {
+      View view = testView();
+      view.orthographic = orthographic;
+      const std::vector<Mat4> places{translation({0.5 * frame, 0.1 * frame, 0})};
+      const bool drawn = reused.drawFrame(view, places, ids({0}));
+      view.right = view.right * (2.0 + frame);
+      view.up = view.up * 0.25;
+      view.forward = view.forward * 7.0;
+      EXPECT_EQ(other.drawFrame(view, places, ids({0})), drawn);
+      EXPECT_EQ(other.image.pixels, reused.image.pixels) << "frame " << frame;
+      EXPECT_GT(covered(other.image), 100.0);
+    }
+    EXPECT_LT(reused.reuse.stats().drawn, 6u);
+  }
+}
+
 TEST_F(LayerReuseTest, WhatIsPeeledIsKeptAsSuch) {
   maker.wall(0.0, 1.0, kGlass);
   Reused reused(maker.scene, {});

@@ -14,6 +14,7 @@
 #include "src/render/scene/scene_buffers.h"
 #include "src/render/scene/scene_programs.h"
 #include "src/render/scene/shaders.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -296,9 +297,10 @@ ObjectId LayerRenderer::objectOf(ObjectId object_or_piece) const {
   return piece != nullptr ? piece->object : object_or_piece;
 }
 
-LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
-                                   LayerImage& image) {
+LayerDrawStats LayerRenderer::draw(const View& given_view, std::span<const ObjectId> objects,
+                                   const LayerDraw& how, LayerImage& image) {
   Impl& r = *impl_;
+  const View view = scene::withUnitAxes(given_view);
   const GlContext::Current current(r.context);
   r.choose(objects, how.as_given);
   const auto [triangles, blended] = r.countTriangles();
@@ -326,9 +328,10 @@ LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> o
   return stats;
 }
 
-std::uint64_t LayerRenderer::hideBehind(const View& view, std::span<const ObjectId> objects,
+std::uint64_t LayerRenderer::hideBehind(const View& given_view, std::span<const ObjectId> objects,
                                         const LensPoint& lens) {
   Impl& r = *impl_;
+  const View view = scene::withUnitAxes(given_view);
   const GlContext::Current current(r.context);
   r.choose(objects, false);
   const auto [triangles, blended] = r.countTriangles();
@@ -340,8 +343,9 @@ std::uint64_t LayerRenderer::hideBehind(const View& view, std::span<const Object
   return triangles - blended;
 }
 
-void LayerRenderer::drawSky(const View& view, LayerImage& image) {
+void LayerRenderer::drawSky(const View& given_view, LayerImage& image) {
   Impl& r = *impl_;
+  const View view = scene::withUnitAxes(given_view);
   const GlContext::Current current(r.context);
   r.begin({0, 0, r.options.width, r.options.height});
   drawSkyBehind(r.sky, view);

@@ -24,6 +24,7 @@ struct PixelRect {
 // covers none, a box that is not finite covers all.
 class RectCollector {
  public:
+  // The view's axes have unit length.
   RectCollector(const View& view, const LensPoint& lens, std::uint32_t width, std::uint32_t height);
 
   void add(const Box& box, const Mat4& scene_from_box);

@@ -8,6 +8,7 @@
 
 #include "src/render/lens/lens_picture_motion.h"
 #include "src/render/lens/lens_picture_seen.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -314,10 +315,15 @@ LensPicture::~LensPicture() = default;
 LensPicture::LensPicture(LensPicture&&) noexcept = default;
 LensPicture& LensPicture::operator=(LensPicture&&) noexcept = default;
 
-Result<LensStats> LensPicture::draw(const View& view, const FrameLayers& layers, const LensSettings& settings,
-                                    LayerImage& picture) {
-  if (const Status ok = impl_->check(layers, settings); !ok) {
+Result<LensStats> LensPicture::draw(const View& given_view, const FrameLayers& layers,
+                                    const LensSettings& given_settings, LayerImage& picture) {
+  if (const Status ok = impl_->check(layers, given_settings); !ok) {
     return ok.error();
+  }
+  const View view = scene::withUnitAxes(given_view);
+  LensSettings settings = given_settings;
+  if (settings.motion) {
+    scene::makeAxesUnit(settings.motion->later);
   }
   std::vector<ObjectId> ids;
   for (const PartId part : layers.parts) {

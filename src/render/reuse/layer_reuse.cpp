@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/render/reuse/layer_reuse_points.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -304,8 +305,9 @@ LayerReuse::~LayerReuse() = default;
 LayerReuse::LayerReuse(LayerReuse&&) noexcept = default;
 LayerReuse& LayerReuse::operator=(LayerReuse&&) noexcept = default;
 
-void LayerReuse::beginFrame(const View& view, std::span<const Mat4> scene_from_stored) {
+void LayerReuse::beginFrame(const View& given_view, std::span<const Mat4> scene_from_stored) {
   Impl& r = *impl_;
+  const View view = scene::withUnitAxes(given_view);
   r.renderer->setTransforms(scene_from_stored);
   std::fill(r.transforms.begin(), r.transforms.end(), Mat4{});
   std::copy_n(scene_from_stored.begin(), std::min(scene_from_stored.size(), r.transforms.size()),

@@ -15,7 +15,7 @@
 
 namespace sightline::render {
 
-// A view and the size of its picture in pixels; rows count from the top.
+// A view, with axes of unit length, and the size of its picture in pixels; rows count from the top.
 class PictureView {
  public:
   PictureView() = default;

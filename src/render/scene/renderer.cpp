@@ -10,6 +10,7 @@
 #include "src/render/scene/scene_buffers.h"
 #include "src/render/scene/scene_programs.h"
 #include "src/render/scene/shaders.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -24,7 +25,7 @@ constexpr std::array<float, 4> kBlack{0.0f, 0.0f, 0.0f, 1.0f};
 struct Renderer::Impl {
   explicit Impl(GlContext c) : context(std::move(c)) {}
   Status prepare(const SceneView& scene, std::uint32_t width, std::uint32_t height);
-  void drawScene(const View& view) const;
+  void drawScene(const View& view) const;  // axes of unit length
   DrawStats timedDraw(const View& view, std::span<const ObjectId> objects);
 
   GlContext context;
@@ -91,7 +92,7 @@ DrawStats Renderer::Impl::timedDraw(const View& view, std::span<const ObjectId> 
   glFinish();
   base::Stopwatch watch;
   const SceneBuffers::Drawn drawn = buffers.select(objects);
-  drawScene(view);
+  drawScene(scene::withUnitAxes(view));
   glFinish();
   return {.draw_us = watch.lap(), .triangles = drawn.triangles, .ranges = drawn.ranges};
 }
@@ -143,7 +144,7 @@ std::uint64_t Renderer::countShowing(const View& view, std::span<const ObjectId>
   glGenQueries(1, &query);
   glDepthMask(GL_FALSE);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  useProgram(impl_->solid, view, 0.0f, kDepthScale);
+  useProgram(impl_->solid, scene::withUnitAxes(view), 0.0f, kDepthScale);
   glBeginQuery(GL_SAMPLES_PASSED, query);
   for (std::size_t pass = 0; pass < kPassCount; ++pass) {
     impl_->buffers.drawPass(static_cast<Pass>(pass));

@@ -28,6 +28,8 @@ struct SceneProgram {
 Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, const char* geometry = nullptr,
                                       const char* vertex = nullptr);
 
+// Views of what follows have axes of unit length.
+
 // The vector from the eye to the lens point in scene space.
 Vec3d lensOffset(const View& view, const LensPoint& lens);
 // Takes positions relative to the lens point to clip space. Depth lies in [0, w], w on the near plane.
