@@ -7,6 +7,7 @@
 #include "src/drawing/outline_union.h"
 #include "src/geometry/clip_convex.h"
 #include "src/geometry/monotone_chain.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline::drawing {
 namespace {
@@ -25,6 +26,7 @@ double gridScaleOf(double extent) {
 
 void Outliner::setView(const View& view, double page_height) {
   view_ = LineView(view, page_height);
+  mirrored_ = scene::isLeftHanded(view_.view());
   const double margin = (view_.top() - view_.bottom()) * kMargin;
   left_ = view_.left() - margin;
   right_ = view_.right() + margin;
@@ -116,9 +118,11 @@ void Outliner::addTriangle(const SceneView& scene, std::span<const std::uint32_t
   for (const Corner& corner : polygon_) {
     ring_.push_back(onGrid(corner.position));
   }
-  // Seen from the front, corners are counter-clockwise: with y down their area is negative.
+  // Seen from the front, corners are counter-clockwise: with y down their area is negative, unless the page
+  // is mirrored.
   const int turn = orientationOf(ring_);
-  if (turn == 0 || (turn > 0 && !double_sided)) {
+  const bool from_behind = mirrored_ ? turn < 0 : turn > 0;
+  if (turn == 0 || (from_behind && !double_sided)) {
     return;
   }
   if (turn < 0) {

@@ -59,6 +59,7 @@ class Outliner {
   bool clip(std::uint32_t borders);
 
   LineView view_;
+  bool mirrored_ = false;                                       // the view is left-handed
   double left_ = 0.0, right_ = 0.0, bottom_ = 0.0, top_ = 0.0;  // of the screen, with the margin
   double scale_ = 1024.0;
   std::vector<Corner> polygon_, scratch_;

@@ -136,6 +136,31 @@ TEST(Outline, LeavesOutBacksUnlessTheyAreDrawn) {
   }
 }
 
+// The picture of a left-handed view is mirrored, and fronts stay fronts.
+TEST(Outline, OfALeftHandedViewIsTheMirroredOne) {
+  for (const bool orthographic : {false, true}) {
+    for (const bool front : {false, true}) {
+      for (const bool double_sided : {false, true}) {
+        OneObject object(double_sided);
+        object.addSquare({1, 2, 0}, 1, front);
+        View view = viewFromFront(orthographic);
+        std::vector<PagePath> rings = object.outline(view);
+        ASSERT_EQ(rings.size(), front || double_sided ? 1u : 0u);
+        view.right = -view.right;
+        const std::vector<PagePath> mirrored = object.outline(view);
+        ASSERT_EQ(mirrored.size(), rings.size());
+        for (std::size_t i = 0; i < rings.size(); ++i) {
+          EXPECT_EQ(areaOf(mirrored[i]), areaOf(rings[i]));
+          for (const PagePoint& p : rings[i]) {
+            const PagePoint there{kHeight * view.aspect - p.x, p.y};
+            EXPECT_EQ(std::count(mirrored[i].begin(), mirrored[i].end(), there), 1);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(Outline, HasHoles) {
   OneObject object;
   // A frame of four bars round a hole of 2 m, with corners that do not match.

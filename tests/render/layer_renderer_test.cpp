@@ -251,6 +251,48 @@ TEST_F(LayerRendererTest, LengthsOfAxesDoNotMatter) {
   }
 }
 
+TEST_F(LayerRendererTest, ALeftHandedViewIsTheMirroredPictureOfTheSameSides) {
+  SceneMaker maker;
+  maker.box({-1.53f, -0.93f, -1.0f}, {1.17f, 1.03f, 1.0f}, kRed);
+  maker.box({0.31f, -1.3f, 2.0f}, {2.04f, 1.4f, 3.0f}, kGlass);
+  maker.wall(3.5, 2.0, kGreen, true);  // its back: not seen
+  LayerRenderer layers = layersOf(maker.scene);
+  Renderer renderer = rendererOf(maker.scene, kWidth, kHeight);
+  const std::vector<ObjectId> all = allOf(maker.scene);
+  Mat4 turn;  // a reflection, which turns the winding once more
+  turn(1, 1) = -1.0;
+  for (const std::vector<Mat4>& places : {std::vector<Mat4>(), std::vector(3, turn)}) {
+    layers.setTransforms(places);
+    for (const bool orthographic : {false, true}) {
+      for (const bool peel : {false, true}) {
+        View view = testView({0.2, 0.3, 10.0});
+        view.orthographic = orthographic;
+        const LayerImage plain = drawn(layers, view, all, {.peel = peel, .depths = true});
+        const Image picture = renderer.draw(view, all);
+        view.right = -view.right;
+        const LayerImage mirrored = drawn(layers, view, all, {.peel = peel, .depths = true});
+        const Image mirrored_picture = renderer.draw(view, all);
+        int differing = 0, covered = 0;
+        for (std::uint32_t y = 0; y < kHeight; ++y) {
+          for (std::uint32_t x = 0; x < kWidth; ++x) {
+            const std::size_t here = y * kWidth + x, there = y * kWidth + kWidth - 1 - x;
+            const float a = plain.depths[here], b = mirrored.depths[there];
+            const Pixel p = pixelOf(picture, x, y), q = pixelOf(mirrored_picture, kWidth - 1 - x, y);
+            const bool same = (a == b || std::abs(a - b) < 1e-3f) &&
+                              std::abs(plain.pixels[here].red - mirrored.pixels[there].red) < 0.01f &&
+                              std::abs(plain.pixels[here].blue - mirrored.pixels[there].blue) < 0.01f &&
+                              std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b) < 6;
+            differing += same ? 0 : 1;
+            covered += a < LayerImage::kNoDepth ? 1 : 0;
+          }
+        }
+        EXPECT_LT(differing, 20) << orthographic << peel;
+        EXPECT_GT(covered, 150);
+      }
+    }
+  }
+}
+
 TEST_F(LayerRendererTest, APixelIsTheMeanOfItsSamplesAndItsDepthTheNearest) {
   SceneMaker maker = opaqueScene(5);
   for (Object& object : maker.scene.objects) {

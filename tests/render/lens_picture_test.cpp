@@ -2,6 +2,7 @@
 
 #include "sightline/render/lens_picture.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -462,6 +463,41 @@ TEST_F(MovingThing, ThatIsNowhereHarmsNothing) {
       moveTo(Mat4{});
       by(method);
       now_ = {Mat4{}, Mat4{}};
+    }
+  }
+}
+
+// The axes of the moving camera have other lengths, or it is left-handed.
+TEST_F(MovingThing, IsTheSameForOtherAxesOfTheSameView) {
+  moveTo(translation({1.0, 0.2, 0.0}));
+  settings_.passes = 7;
+  View later = view_;
+  later.eye = view_.eye + Vec3d(0.6, 0.3, -0.2);
+  const View view = view_;
+  for (const LayerBlur blur : {LayerBlur::kAutomatic, LayerBlur::kAccumulate}) {
+    settings_.parts = {{PartId(mover_.value), blur}, {PartId(backdrop_.value), blur}};
+    for (const LensMethod method : {LensMethod::kLayers, LensMethod::kAccumulation}) {
+      for (const double aperture : {0.0, 0.4}) {
+        settings_.lens = {.focus = 9.0, .aperture = aperture};
+        view_ = view;
+        settings_.motion->later = later;
+        const LayerImage expected = by(method);
+        view_.right = view.right * 2.0;
+        view_.forward = view.forward * 0.125;
+        settings_.motion->later.up = later.up * 8.0;
+        settings_.motion->later.forward = later.forward * 4.0;
+        EXPECT_EQ(by(method).pixels, expected.pixels);
+        if (aperture > 0.0) {
+          continue;  // the points of the lens are not those of the mirrored lens
+        }
+        view_.right = -view.right;
+        settings_.motion->later.right = -later.right;
+        LayerImage mirrored = by(method);
+        for (auto row = mirrored.pixels.begin(); row != mirrored.pixels.end(); row += kLensWidth) {
+          std::reverse(row, row + kLensWidth);
+        }
+        EXPECT_LT(rmsOf(mirrored, expected), 0.004);
+      }
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "src/scene/usable_view.h"
+
 namespace sightline::render {
 namespace {
 
@@ -57,6 +59,7 @@ View viewAt(const View& view, const View& later, double time) {
   const Vec3d forward = between(view.forward, later.forward);
   if (dot(forward, view.forward) > 0.0) {
     setOrientation(result, forward, between(view.up, later.up));
+    result.right = scene::isLeftHanded(view) ? -result.right : result.right;
   }
   return result;
 }

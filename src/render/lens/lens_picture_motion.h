@@ -17,7 +17,8 @@ struct PixelStep {
   double x = 0.0, y = 0.0;
 };
 
-// time is counted in frames from this one on: 0 is this frame, 1 the next.
+// All views have axes of unit length. time is counted in frames from this one on: 0 is this frame, 1 the
+// next. Both views are right-handed, or both left-handed.
 View viewAt(const View& view, const View& later, double time);
 void transformsAt(const FrameMotion& motion, std::size_t objects, double time, std::vector<Mat4>& transforms);
 

@@ -6,6 +6,7 @@
 
 #include "src/render/context/gl_context.h"
 #include "src/render/scene/shaders.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline::render {
 namespace {
@@ -76,6 +77,7 @@ Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, co
                       .eye_low = glGetUniformLocation(*id, "eye_low"),
                       .lens_offset = glGetUniformLocation(*id, "lens_offset"),
                       .haze = glGetUniformLocation(*id, "haze"),
+                      .towards_eye = glGetUniformLocation(*id, "towards_eye"),
                       .depth_scale = glGetUniformLocation(*id, "depth_scale"),
                       .cut_count = glGetUniformLocation(*id, "cut_count"),
                       .cut_fronts = glGetUniformLocation(*id, "cut_fronts"),
@@ -89,6 +91,8 @@ void useProgram(const SceneProgram& program, const View& view, float haze, float
   const Vec3f high(eye);
   const Vec3f low(eye - Vec3d(high));
   const Vec3f from_eye(offset);
+  const bool mirrored = scene::isLeftHanded(view);
+  glFrontFace(mirrored ? GL_CW : GL_CCW);
   glUseProgram(program.id);
   glUniformMatrix4fv(program.clip_from_relative, 1, GL_FALSE,
                      toFloats(reversedClipFromRelative(view, lens)).data());
@@ -96,6 +100,7 @@ void useProgram(const SceneProgram& program, const View& view, float haze, float
   glUniform3f(program.eye_low, low.x, low.y, low.z);
   glUniform3f(program.lens_offset, from_eye.x, from_eye.y, from_eye.z);
   glUniform1f(program.haze, haze);
+  glUniform1f(program.towards_eye, mirrored ? -1.0f : 1.0f);
   glUniform1f(program.depth_scale, depth_scale);
 }
 
