@@ -412,6 +412,56 @@ TEST_F(LayerReuseTest, DepthsAndPointsOfALensAreDrawnEachTime) {
   }
 }
 
+// A box moves before a wall and away again.
+TEST_F(LayerReuseTest, WhatIsDrawnWithoutWhatOthersHideIsDrawnEachTime) {
+  maker.wall(0.0, 2.0, kGlass);
+  maker.box({-1, -1, 1}, {1, 1, 2}, kRed);
+  Result<LayerRenderer> renderer =
+      LayerRenderer::create(maker.scene.view(), {.width = kReuseWidth, .height = kReuseHeight});
+  ASSERT_TRUE(renderer.has_value());
+  LayerReuse reuse(maker.scene.view(), *renderer, {});
+  for (const double x : {9.0, 0.0, 0.0, 9.0}) {
+    reuse.beginFrame(testView(), std::vector{Mat4{}, translation({x, 0, 0})});
+    renderer->hideBehind(testView(), ids({1}));
+    LayerImage image, expected;
+    reuse.image(ids({0}), {.hidden = true}, image);
+    renderer->draw(testView(), ids({0}), {.hidden = true}, expected);
+    EXPECT_EQ(image.pixels, expected.pixels) << x;
+    EXPECT_GT(covered(image), 50.0);
+  }
+  EXPECT_EQ(reuse.stats().drawn, 4u);
+}
+
+// The planes by which objects are cut may change in any frame.
+TEST_F(LayerReuseTest, PiecesAreDrawnEachTime) {
+  maker.wall(0.0, 1.0, kRed);
+  maker.wall(-1.0, 1.0, kGreen);
+  Result<LayerRenderer> renderer =
+      LayerRenderer::create(maker.scene.view(), {.width = kReuseWidth, .height = kReuseHeight});
+  ASSERT_TRUE(renderer.has_value());
+  LayerReuse reuse(maker.scene.view(), *renderer, {});
+  for (const double at : {0.0, 0.0, 0.4}) {
+    const Plane plane{{1, 0, 0}, -at};
+    renderer->setPieces(
+        {{ObjectId(2u), ObjectId(0u), {{plane, true}}}, {ObjectId(3u), ObjectId(0u), {{plane, false}}}});
+    reuse.beginFrame(testView(), {});
+    for (const std::vector<ObjectId>& layer : {ids({2}), ids({3}), ids({3, 1})}) {
+      LayerImage image, expected;
+      reuse.image(layer, {}, image);
+      renderer->draw(testView(), layer, {}, expected);
+      EXPECT_EQ(image.pixels, expected.pixels) << at;
+      EXPECT_GT(covered(image), 20.0);
+    }
+  }
+  EXPECT_EQ(reuse.stats().drawn, 9u);
+  EXPECT_EQ(reuse.stats().layers, 9u);
+  reuse.beginFrame(testView(), std::vector{translation({90, 0, 0})});
+  LayerImage image;
+  reuse.image(ids({2}), {}, image);
+  EXPECT_EQ(covered(image), 0.0);
+  EXPECT_EQ(reuse.stats().layers, 9u) << "a piece of what is outside the view costs nothing";
+}
+
 TEST_F(LayerReuseTest, LengthsOfAxesDoNotMatter) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
   for (const bool orthographic : {false, true}) {

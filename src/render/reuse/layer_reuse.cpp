@@ -72,7 +72,7 @@ struct LayerReuse::Impl {
   }
 
   View guardedView(const View& frame_view) const;
-  void takeObjects(std::span<const ObjectId> given);
+  bool takeObjects(std::span<const ObjectId> given);
   bool isPlaced() const;
   bool isVisible() const;
   bool hasMoved(const KeptImage& kept) const;
@@ -121,11 +121,18 @@ View LayerReuse::Impl::guardedView(const View& frame_view) const {
   return wide;
 }
 
-void LayerReuse::Impl::takeObjects(std::span<const ObjectId> given) {
-  objects.assign(given.begin(), given.end());
+// Sets `objects` to those of the layer, whole or in pieces. True if there are no pieces.
+bool LayerReuse::Impl::takeObjects(std::span<const ObjectId> given) {
+  bool are_whole = true;
+  objects.clear();
+  for (const ObjectId id : given) {
+    objects.push_back(renderer->objectOf(id));
+    are_whole = are_whole && objects.back() == id;
+  }
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   std::erase_if(objects, [&](ObjectId object) { return object.value >= shapes.objects(); });
+  return are_whole;
 }
 
 // Whether the view and the transforms of the layer's objects are finite.
@@ -323,7 +330,7 @@ void LayerReuse::beginFrame(const View& given_view, std::span<const Mat4> scene_
 
 void LayerReuse::image(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image) {
   Impl& r = *impl_;
-  r.takeObjects(objects);
+  const bool are_whole = r.takeObjects(objects);
   const bool is_placed = r.isPlaced();
   if (r.objects.empty() || (is_placed && !r.isVisible())) {
     image.clear(r.width, r.height);
@@ -336,9 +343,10 @@ void LayerReuse::image(std::span<const ObjectId> objects, const LayerDraw& how, 
   ++r.stats.layers;
   r.stats.triangles += triangles;
   // Points are projected from the eye, so images from other points of the lens are not reused. Images are
-  // kept by their objects without an order, so those drawn in a given order are not reused either.
-  const bool is_reusable =
-      is_placed && !how.depths && !how.as_given && how.lens.right == 0.0 && how.lens.up == 0.0;
+  // kept by their objects without an order, so those drawn in a given order are not reused either. What hides
+  // a layer, and how its objects are cut into pieces, changes without the layer's objects.
+  const bool is_reusable = is_placed && are_whole && !how.depths && !how.as_given && !how.hidden &&
+                           how.lens.right == 0.0 && how.lens.up == 0.0;
   if (is_reusable && r.warpKept(how, image)) {
     return;
   }
