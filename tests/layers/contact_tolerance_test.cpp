@@ -286,6 +286,52 @@ TEST(ContactTolerance, WhatWasFoundInTheLastFrameChangesNothing) {
   }
 }
 
+// The groups of the parts in their order, where each has one part.
+std::vector<std::uint32_t> orderOf(const LayerOrder& order) {
+  std::vector<std::uint32_t> parts;
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    EXPECT_EQ(order.group(i).size(), 1u) << "group " << i;
+    parts.push_back(order.group(i)[0].value);
+  }
+  return parts;
+}
+
+// A sheet inside a container, closer to its far or its near wall than the tolerance, from both sides.
+TEST(ContactTolerance, ContentStaysBetweenTheFrontAndTheBackOfItsContainer) {
+  for (const double tolerance : {0.0, 1e-6, 0.01, 5.0}) {
+    for (const double depth : {0.002, 0.5, 1.998}) {
+      LayerSorter sorter(Blocks::settingsWith(tolerance));
+      const HullId shell = sorter.addHull(*buildHull(cornersOf({{-1, -1, -1}, {1, 1, 1}, {}})));
+      const HullId sheet =
+          sorter.addHull(*buildHull(cornersOf({{-0.5, -0.5, depth - 1}, {0.5, 0.5, depth - 1}, {}})));
+      const PartId front = sorter.addPart(std::span(&shell, 1)), back = sorter.addPart(std::span(&shell, 1));
+      sorter.addPart(std::span(&sheet, 1));
+      sorter.setContainer(front, back);
+      const std::vector<std::uint32_t> expected{0, 2, 1};
+      for (const bool orthographic : {false, true}) {
+        for (const double side : {-1.0, 1.0}) {
+          SCOPED_TRACE(testing::Message() << tolerance << " " << depth << " " << side);
+          const View view = viewTo({0.1, 0.2, 6 * side}, {0, 0, -side}, orthographic);
+          EXPECT_EQ(orderOf(sorter.update(view)), expected);
+          EXPECT_EQ(orderOf(sorter.update(view)), expected) << "in the next frame";
+        }
+      }
+    }
+  }
+}
+
+// What a container stands on touches it from outside: the tolerance holds there.
+TEST(ContactTolerance, AContainerMayStandOnWhatItTouches) {
+  LayerSorter sorter(Blocks::settingsWith(0.01));
+  const HullId shell = sorter.addHull(*buildHull(cornersOf({{-1, -1, -1}, {1, 1, 1}, {}})));
+  const HullId table = sorter.addHull(*buildHull(cornersOf({{-9, -2, -9}, {9, -0.999, 9}, {}})));
+  const PartId front = sorter.addPart(std::span(&shell, 1)), back = sorter.addPart(std::span(&shell, 1));
+  sorter.addPart(std::span(&table, 1));
+  sorter.setContainer(front, back);
+  EXPECT_EQ(orderOf(sorter.update(viewTo({3, 4, 20}, {0, 0, -1}, false))),
+            (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
 TEST(ContactTolerance, OddTolerancesAreNone) {
   for (const double odd : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     Blocks blocks(odd);

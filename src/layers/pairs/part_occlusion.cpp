@@ -85,9 +85,15 @@ bool PartOcclusion::hullsOcclude(std::uint32_t front, std::uint32_t back, bool w
   if (without_rule && stillCollide(front, back)) {
     return containment(front, back) != Verdict::kDoesNot;
   }
-  const double erosion = without_rule && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
-                             ? contact_tolerance_
-                             : 0.0;
+  const bool may_touch = without_rule && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back);
+  if (may_touch) {
+    // What is inside a container is so whether or not the smaller hulls still intersect.
+    if (const Verdict verdict = containment(front, back); verdict != Verdict::kOpen) {
+      collide(front, back);
+      return verdict == Verdict::kOccludes;
+    }
+  }
+  const double erosion = may_touch ? contact_tolerance_ : 0.0;
   const bool occludes = anyHullPair(front, back, Reach::kToTheEye, [&](std::uint32_t i, std::uint32_t j) {
     return hullOccludes(front, i, back, j, erosion);
   });
@@ -299,7 +305,7 @@ bool PartOcclusion::isContainer(std::uint32_t front, std::uint32_t back) const {
 }
 
 // Whether a part inside a container decides the question: it is behind the container's front and in front of
-// its back. Called for parts whose hulls intersect.
+// its back.
 PartOcclusion::Verdict PartOcclusion::containment(std::uint32_t front, std::uint32_t back) const {
   const PairRules::Container around_front = rules_->containerOf(back);
   if (around_front.other != PairRules::kNone && isContainer(back, around_front.other) &&
