@@ -67,8 +67,10 @@ struct LayerSettings {
   bool frustum_culling = false;
   // More than 0, metres: parts whose spatial extents overlap are taken as hulls made smaller by up to half of
   // this on all sides. So parts that touch, as boxes that share a face do, or overlap by a quarter of this or
-  // less, have an order. It may be wrong where the image of one covers that of the other by no more than
-  // this. 0: parts that touch occlude each other.
+  // less, have an order: that of the smaller hulls. It may be wrong where the image of one covers that of the
+  // other by no more than this, and all over a part that is thinner than this and lies inside another one, no
+  // deeper behind its face than half of this. What is inside a container stays there. 0: parts that touch
+  // occlude each other.
   double contact_tolerance = 0.0;
   std::uint32_t pair_expiry = 1;  // frames for which a pair's cached result is kept after its last use
 };
