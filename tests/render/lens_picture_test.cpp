@@ -467,6 +467,19 @@ TEST_F(MovingThing, ThatIsNowhereHarmsNothing) {
   }
 }
 
+TEST_F(LensPictureTest, LayersOfWhichADepthBufferHidesPartsAreRefused) {
+  const ObjectId glass = maker_.wall(4.0, 1.0, kGlass), wall = maker_.wall(5.0, 0.5, kRed);
+  prepare();
+  FrameLayers layers = layersOf({{glass}, {wall}});
+  layers.first_hidden = LayerId(0u);
+  layers.depth_buffered = LayerId(1u);
+  for (const LensMethod method : kMethods) {
+    LensSettings settings{.method = method};
+    EXPECT_EQ(errorOf(layers, settings).find("depth buffer") != std::string::npos,
+              method == LensMethod::kLayers);
+  }
+}
+
 // The axes of the moving camera have other lengths, or it is left-handed.
 TEST_F(MovingThing, IsTheSameForOtherAxesOfTheSameView) {
   moveTo(translation({1.0, 0.2, 0.0}));

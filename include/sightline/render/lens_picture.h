@@ -108,8 +108,9 @@ class LensPicture {
   LensPicture& operator=(LensPicture&&) noexcept;
 
   // Draws the picture, without depths. With a sky it is opaque; kSingleSpread's is then composited over
-  // black. Errors: no passes; a part of the layers or of settings.parts that is no object; motion with a
-  // single picture, with a wrong number of transforms, or with a shutter outside 0 to 1.
+  // black. Errors: no passes; a part of the layers or of settings.parts that is no object; kLayers with a
+  // depth-buffered layer (FrameLayers::depth_buffered); motion with a single picture, with a wrong number of
+  // transforms, or with a shutter outside 0 to 1.
   Result<LensStats> draw(const View& view, const FrameLayers& layers, const LensSettings& settings,
                          LayerImage& picture);
 

@@ -127,6 +127,11 @@ Status LensPicture::Impl::check(const FrameLayers& layers, const LensSettings& s
       return notAnObject(chosen.part, objects);
     }
   }
+  if (settings.method == LensMethod::kLayers && layers.depth_buffered.valid()) {
+    return Error{
+        "what a depth buffer hides of layers cannot be blurred layer by layer; sort all parts, or "
+        "accumulate"};
+  }
   if (!settings.motion) {
     return Success{};
   }
