@@ -1,5 +1,6 @@
 #include "sightline/render/layer_renderer.h"
 
+#include <limits>
 #include <string>
 
 #include "sightline/render/compare.h"
@@ -203,6 +204,22 @@ TEST_F(LayerRendererTest, DepthsAreThoseOfRays) {
         EXPECT_GT(sure, static_cast<int>(kWidth * kHeight) / 2);
         EXPECT_GT(covered, 150);
       }
+    }
+  }
+}
+
+TEST_F(LayerRendererTest, DepthsEndNowhereIfTheFarPlaneIsFarOrInfinite) {
+  SceneMaker maker;
+  maker.wall(0.0, 1.0, kRed);
+  LayerRenderer layers = layersOf(maker.scene);
+  for (const double far : {11.0, 1e30, 1e308, std::numeric_limits<double>::infinity()}) {
+    for (const double near : {0.1, 2.0, 9.9}) {
+      View view = testView();
+      view.z_near = near;
+      view.z_far = far;
+      const LayerImage image = drawn(layers, view, allOf(maker.scene), {.depths = true});
+      EXPECT_NEAR(image.depths[kHeight / 2 * kWidth + kWidth / 2], 10.0, 1e-4) << near << " " << far;
+      EXPECT_EQ(image.depths[0], LayerImage::kNoDepth);
     }
   }
 }

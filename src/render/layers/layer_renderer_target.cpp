@@ -60,15 +60,15 @@ void place(const std::vector<T>& pixels, const PixelRect& rect, std::size_t widt
 }
 
 // Converts values of the depth buffer to metres. With the near distance n and the far distance f, depth z is
-// stored as n (f - z) / (z (f - n)), in orthographic views as (f - z) / (f - n). 0 means that nothing was
-// drawn.
+// stored as d = n (f - z) / (z (f - n)), so that z = n / (d (1 - n / f) + n / f), where f may be infinite; in
+// orthographic views it is stored as (f - z) / (f - n). 0 means that nothing was drawn.
 void toMetres(const View& view, std::vector<float>& depths) {
-  const double range = view.z_far - view.z_near;
+  const double near = view.z_near, range = view.z_far - near, share = near / view.z_far;
   for (float& depth : depths) {
     const double d = depth;
     depth = d == 0.0            ? LayerImage::kNoDepth
             : view.orthographic ? static_cast<float>(view.z_far - d * range)
-                                : static_cast<float>(view.z_far * view.z_near / (d * range + view.z_near));
+                                : static_cast<float>(near / (d * (1.0 - share) + share));
   }
 }
 
