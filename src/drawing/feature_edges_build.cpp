@@ -4,13 +4,14 @@
 #include <bit>
 #include <tuple>
 
+#include "src/occluders/near_line.h"
+
 namespace sightline::drawing {
 namespace {
 
 // Corners are rounded to single precision by up to 2^-24 of their largest coordinate, so the distance between
 // an edge and a corner on it is off by some 2^-22.
 constexpr double kPlaceRounding = 0x1p-21;
-constexpr std::size_t kLeaf = 8;  // corners in a leaf of the k-d tree
 
 // A key that is equal for equal places (-0 counts as 0) and that orders NaN too.
 std::array<std::uint32_t, 3> placeKey(const Vec3f& p) {
@@ -93,7 +94,7 @@ void EdgeBuilder::cutAtCorners() {
     };
     return !(i > 0 && same(half_edges_[i - 1])) && !(i + 1 < half_edges_.size() && same(half_edges_[i + 1]));
   };
-  tree_.clear();
+  boxes_.reset();
   cut_.clear();
   for (std::size_t i = 0; i < half_edges_.size(); ++i) {
     on_edge_.clear();
@@ -122,58 +123,32 @@ void EdgeBuilder::cutAtCorners() {
 
 // Sets on_edge_ to the corners that lie on the edge, from a to b.
 void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
-  if (tree_.empty()) {
-    tree_ = corners_;
-    divide(tree_, 0);
+  if (!boxes_) {
+    std::vector<Box> boxes;
+    for (const std::uint32_t corner : corners_) {
+      boxes.push_back({scene_.positions[corner], scene_.positions[corner]});
+    }
+    boxes_.emplace(boxes, corners_);
   }
   const Vec3d a = at(edge.a);
-  const Vec3d ab = at(edge.b) - a;
+  const Vec3d b = at(edge.b);
+  const Vec3d ab = b - a;
   const double length_ab = length(ab);
-  const Vec3d margin(tolerance_, tolerance_, tolerance_);
-  near_.clear();
-  findNear(tree_, 0, min(a, a + ab) - margin, max(a, a + ab) + margin);
-  for (const std::uint32_t corner : near_) {
+  const occluders::NearLine line(a, b, 2.0 * tolerance_);
+  const auto test = [&](std::uint32_t corner) {
     const Vec3d ac = at(corner) - a;
     const double along = dot(ac, ab) / length_ab;
     const bool between = along > tolerance_ && along < length_ab - tolerance_;
     if (between && length(cross(ac, ab)) <= tolerance_ * length_ab) {
       on_edge_.push_back({along / length_ab, corner});
     }
-  }
+  };
+  boxes_->forMeeting(
+      occluders::grownBox(min(a, b), max(a, b), tolerance_),
+      [&line](const Box& box) { return line.mayMeet(box); }, test);
   std::sort(on_edge_.begin(), on_edge_.end(), [](const OnEdge& p, const OnEdge& q) {
     return std::tie(p.share, p.corner) < std::tie(q.share, q.corner);
   });
-}
-
-void EdgeBuilder::divide(std::span<std::uint32_t> corners, int axis) {
-  if (corners.size() <= kLeaf) {
-    return;
-  }
-  const std::size_t half = corners.size() / 2;
-  std::nth_element(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(half), corners.end(),
-                   [&](std::uint32_t p, std::uint32_t q) {
-                     return scene_.positions[p][axis] < scene_.positions[q][axis];
-                   });
-  divide(corners.first(half), (axis + 1) % 3);
-  divide(corners.subspan(half + 1), (axis + 1) % 3);
-}
-
-// Appends to near_ all corners of a part of the tree that lie between low and high, and possibly others.
-void EdgeBuilder::findNear(std::span<const std::uint32_t> corners, int axis, const Vec3d& low,
-                           const Vec3d& high) {
-  if (corners.size() <= kLeaf) {
-    near_.insert(near_.end(), corners.begin(), corners.end());
-    return;
-  }
-  const std::size_t half = corners.size() / 2;
-  const double middle = at(corners[half])[axis];
-  near_.push_back(corners[half]);
-  if (low[axis] <= middle) {
-    findNear(corners.first(half), (axis + 1) % 3, low, high);
-  }
-  if (high[axis] >= middle) {
-    findNear(corners.subspan(half + 1), (axis + 1) % 3, low, high);
-  }
 }
 
 void EdgeBuilder::store(FeatureEdges& edges) const {

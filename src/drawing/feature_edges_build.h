@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "sightline/drawing/feature_edges.h"
+#include "src/occluders/conform/conform_pairs.h"
 
 namespace sightline::drawing {
 
@@ -35,8 +37,6 @@ class EdgeBuilder {
   bool hasArea(const std::array<std::uint32_t, 3>& corners) const;
   void cutAtCorners();
   void findCornersOn(const HalfEdge& edge);
-  void divide(std::span<std::uint32_t> corners, int axis);
-  void findNear(std::span<const std::uint32_t> corners, int axis, const Vec3d& low, const Vec3d& high);
   void store(FeatureEdges& edges) const;
 
   Vec3d at(std::uint32_t corner) const { return Vec3d(scene_.positions[corner]); }
@@ -45,10 +45,7 @@ class EdgeBuilder {
   double tolerance_ = 0.0;                 // metres
   std::vector<std::uint32_t> stands_for_;  // each position's merged corner; valid for the object's positions
   std::vector<std::uint32_t> corners_;     // the object's merged corners, each once
-  // corners_ as an implicit k-d tree: the middle one divides the others along x, the halves are divided along
-  // y, and so on. Empty until it is needed.
-  std::vector<std::uint32_t> tree_;
-  std::vector<std::uint32_t> near_;
+  std::optional<occluders::BoxPairs> boxes_;  // of corners_; empty until it is needed
   std::vector<HalfEdge> half_edges_, cut_;
   std::vector<OnEdge> on_edge_;
 };

@@ -276,6 +276,50 @@ TEST(FeatureEdges, AreCutAtEachOfManyCorners) {
   EXPECT_EQ(lines.count(ends(at(3, 0), at(4, 0))), 0u);
 }
 
+// Corners in whole numbers, so that many have equal coordinates and many lie on edges of others.
+TEST(FeatureEdges, OfTrianglesOnALatticeHaveNoCornerOnThem) {
+  std::size_t cuts = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    std::mt19937 random(seed);
+    const auto corner = [&] {
+      const auto whole = [&] { return static_cast<float>(random() % 9); };
+      const float x = whole(), y = whole();
+      return Vec3f(x, y, static_cast<float>(random() % 3));
+    };
+    Triangles triangles;
+    std::set<std::array<float, 3>> corners;
+    std::map<Ends, int> sides;
+    while (triangles.size() < 60) {
+      const Triangle t{corner(), corner(), corner()};
+      if (const Vec3d normal = cross(Vec3d(t[1]) - Vec3d(t[0]), Vec3d(t[2]) - Vec3d(t[0]));
+          normal == Vec3d()) {
+        continue;
+      }
+      triangles.push_back(t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners.insert(key(t[k]));
+        ++sides[ends(t[k], t[(k + 1) % 3])];
+      }
+    }
+    const Lines lines = linesOf(sceneOf(triangles, true), viewFrom({40.3, 50.7, 60.1}));
+    EXPECT_GT(lines.size(), 150u);
+    for (const auto& [line, kind] : lines) {
+      const Vec3d a(line.first[0], line.first[1], line.first[2]);
+      const Vec3d b(line.second[0], line.second[1], line.second[2]);
+      const auto side = sides.find(line);
+      cuts += side == sides.end() ? 1 : 0;
+      if (side != sides.end() && side->second > 1) {
+        continue;  // edges of several faces are not cut
+      }
+      for (const std::array<float, 3>& place : corners) {
+        const Vec3d p(place[0], place[1], place[2]);
+        EXPECT_FALSE(cross(p - a, b - a) == Vec3d() && dot(p - a, p - b) < 0.0) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(cuts, 200u);
+}
+
 TEST(FeatureEdges, FacesThatLieOnOneAnotherCountAsOne) {
   Triangles doubled = cube();
   const Triangles once = doubled;
