@@ -36,6 +36,10 @@ if(SIGHTLINE_SANITIZE)
   endif()
 endif()
 
+# Instruction sets of ARM and RISC-V for which Highway compiles nothing: their vectors have no fixed size, so they can be
+# neither members nor captured nor in arrays. Machines that have such a set take the best one that is left, on ARM NEON.
+set(SIGHTLINE_UNSIZED_TARGETS "HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV")
+
 function(sightline_options target)
   cmake_parse_arguments(PARSE_ARGV 1 own "UNCHECKED" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -63,14 +67,15 @@ function(sightline_options target)
     target_compile_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS} -fno-sanitize-recover=all
       -fno-omit-frame-pointer -UNDEBUG -Og -g1)
     # Vector code is compiled without SSSE3 and SSE4: their vectors are as long as those of SSE2, so that they touch the
-    # same memory, and the release tests force every instruction set, so that no test is lost. Sources with arrays of
-    # vectors cannot be compiled for the other five, whose vectors have no fixed size.
+    # same memory, and the release tests force every instruction set, so that no test is lost.
     target_compile_definitions(${target} PRIVATE
-      "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+      "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|${SIGHTLINE_UNSIZED_TARGETS})")
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       # GCC's warnings about uninitialised values are unreliable in instrumented code.
       target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
     endif()
+  elseif(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "86|AMD64")
+    target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(${SIGHTLINE_UNSIZED_TARGETS})")
   endif()
 endfunction()
 

@@ -8,7 +8,6 @@
 
 #include "src/occlusion/boxes/box_outline.h"
 #include "src/occlusion/boxes/box_point.h"
-#include "src/occlusion/boxes/sized_vectors.h"
 #include "src/occlusion/eye_box.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -21,8 +21,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "src/occlusion/boxes/sized_vectors.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/boxes/pixel_boxes.cpp"
 #include <hwy/foreach_target.h>
@@ -47,16 +45,8 @@ constexpr float kWellConditioned = 64.0f;    // the least depth, as a multiple o
 constexpr float kLargest = 0x1p60f;          // S of boxes that are projected
 constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
 
-// One box a lane, relative to the eye: [0] its minimum, [1] its maximum coordinate.
-template <class D>
-struct EyeBoxes {
-  using Vec = hn::Vec<D>;
-  using Mask = hn::Mask<D>;
-  Vec x[2], y[2], z[2];
-  Vec reach;  // S
-  Vec error;  // E
-  Mask usable;
-};
+// Structures of vectors are initialised as a whole: a default constructor that the compiler makes is compiled
+// for the machine's basic instruction set, from which it cannot call that of a vector.
 
 // Minima and maxima of one coordinate.
 template <class D>
@@ -64,20 +54,35 @@ struct Range {
   using Vec = hn::Vec<D>;
   Vec min, max;
 };
+template <class D>
+struct Ranges {
+  Range<D> x, y, z;
+};
+
+// One box a lane, relative to the eye.
+template <class D>
+struct EyeBoxes {
+  using Vec = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  Range<D> x, y, z;
+  Vec reach;  // S
+  Vec error;  // E
+  Mask usable;
+};
 
 template <class D>
-HWY_INLINE void loadRanges(D d, const float* floats, Range<D>& x, Range<D>& y, Range<D>& z) {
+HWY_INLINE Ranges<D> loadRanges(D d, const float* floats) {
 #if HWY_TARGET == HWY_SCALAR
-  x = {hn::Set(d, floats[0]), hn::Set(d, floats[3])};
-  y = {hn::Set(d, floats[1]), hn::Set(d, floats[4])};
-  z = {hn::Set(d, floats[2]), hn::Set(d, floats[5])};
+  return {{hn::Set(d, floats[0]), hn::Set(d, floats[3])},
+          {hn::Set(d, floats[1]), hn::Set(d, floats[4])},
+          {hn::Set(d, floats[2]), hn::Set(d, floats[5])}};
 #else
   hn::Vec<D> x_a, y_a, z_a, x_b, y_b, z_b;
   hn::LoadInterleaved3(d, floats, x_a, y_a, z_a);
   hn::LoadInterleaved3(d, floats + 3 * hn::Lanes(d), x_b, y_b, z_b);
-  x = {hn::ConcatEven(d, x_b, x_a), hn::ConcatOdd(d, x_b, x_a)};
-  y = {hn::ConcatEven(d, y_b, y_a), hn::ConcatOdd(d, y_b, y_a)};
-  z = {hn::ConcatEven(d, z_b, z_a), hn::ConcatOdd(d, z_b, z_a)};
+  return {{hn::ConcatEven(d, x_b, x_a), hn::ConcatOdd(d, x_b, x_a)},
+          {hn::ConcatEven(d, y_b, y_a), hn::ConcatOdd(d, y_b, y_a)},
+          {hn::ConcatEven(d, z_b, z_a), hn::ConcatOdd(d, z_b, z_a)}};
 #endif
 }
 
@@ -85,22 +90,20 @@ template <class D>
 HWY_INLINE EyeBoxes<D> load(D d, const BoxProjection& p, const float* floats) {
   using Vec = hn::Vec<D>;
   using Mask = hn::Mask<D>;
-  Range<D> x, y, z;
-  loadRanges(d, floats, x, y, z);
-  const auto toEye = [&](const Range<D>& r, float high, float low, Vec out[2]) HWY_ATTR {
-    out[0] = hn::Sub(hn::Sub(r.min, hn::Set(d, high)), hn::Set(d, low));
-    out[1] = hn::Sub(hn::Sub(r.max, hn::Set(d, high)), hn::Set(d, low));
-    return hn::Le(r.min, r.max);
+  const auto [x, y, z] = loadRanges(d, floats);
+  const auto toEye = [&](const Range<D>& r, float high, float low) HWY_ATTR {
+    return Range<D>{hn::Sub(hn::Sub(r.min, hn::Set(d, high)), hn::Set(d, low)),
+                    hn::Sub(hn::Sub(r.max, hn::Set(d, high)), hn::Set(d, low))};
   };
-  EyeBoxes<D> boxes;
-  const Mask x_good = toEye(x, p.eye_high.x, p.eye_low.x, boxes.x);
-  const Mask y_good = toEye(y, p.eye_high.y, p.eye_low.y, boxes.y);
-  const Mask z_good = toEye(z, p.eye_high.z, p.eye_low.z, boxes.z);
-  const auto size = [](const Vec v[2]) HWY_ATTR { return hn::Max(hn::Abs(v[0]), hn::Abs(v[1])); };
-  boxes.reach = hn::Add(hn::Add(size(boxes.x), size(boxes.y)), size(boxes.z));
-  boxes.error = hn::Add(hn::Mul(boxes.reach, hn::Set(d, kRounding)), hn::Set(d, p.eye_rounding));
-  boxes.usable = hn::And(hn::And(x_good, y_good), hn::And(z_good, hn::Le(boxes.reach, hn::Set(d, kLargest))));
-  return boxes;
+  const Range<D> eye_x = toEye(x, p.eye_high.x, p.eye_low.x), eye_y = toEye(y, p.eye_high.y, p.eye_low.y),
+                 eye_z = toEye(z, p.eye_high.z, p.eye_low.z);
+  const auto size = [](const Range<D>& r) HWY_ATTR { return hn::Max(hn::Abs(r.min), hn::Abs(r.max)); };
+  const Vec reach = hn::Add(hn::Add(size(eye_x), size(eye_y)), size(eye_z));
+  const Vec error = hn::Add(hn::Mul(reach, hn::Set(d, kRounding)), hn::Set(d, p.eye_rounding));
+  const auto good = [](const Range<D>& r) HWY_ATTR { return hn::Le(r.min, r.max); };
+  const Mask usable =
+      hn::And(hn::And(good(x), good(y)), hn::And(good(z), hn::Le(reach, hn::Set(d, kLargest))));
+  return {eye_x, eye_y, eye_z, reach, error, usable};
 }
 
 // One coordinate of the eight corners along an axis.
@@ -111,14 +114,14 @@ struct Corners {
 
   HWY_INLINE Corners(D d, const EyeBoxes<D>& b, const BoxProjection::Axis& axis) {
     const Vec ax = hn::Set(d, axis.x), ay = hn::Set(d, axis.y), az = hn::Set(d, axis.z);
-    const Vec x0 = hn::Mul(ax, b.x[0]), x1 = hn::Mul(ax, b.x[1]);
-    const Vec y0 = hn::Mul(ay, b.y[0]), y1 = hn::Mul(ay, b.y[1]);
+    const Vec x0 = hn::Mul(ax, b.x.min), x1 = hn::Mul(ax, b.x.max);
+    const Vec y0 = hn::Mul(ay, b.y.min), y1 = hn::Mul(ay, b.y.max);
     xy[0] = hn::Add(x0, y0);
     xy[1] = hn::Add(x1, y0);
     xy[2] = hn::Add(x0, y1);
     xy[3] = hn::Add(x1, y1);
-    z[0] = hn::Mul(az, b.z[0]);
-    z[1] = hn::Mul(az, b.z[1]);
+    z[0] = hn::Mul(az, b.z.min);
+    z[1] = hn::Mul(az, b.z.max);
   }
   HWY_INLINE Vec at(std::size_t corner) const { return hn::Add(xy[corner & 3], z[corner >> 2]); }
   HWY_INLINE Vec min() const {
@@ -145,9 +148,8 @@ HWY_INLINE Extent<D> extentOf(D d, const Corners<D>& x, const Corners<D>& y, con
   using Vec = hn::Vec<D>;
   const Vec one = hn::Set(d, 1.0f);
   Vec inverse = hn::Div(one, z.at(0));
-  Extent<D> e;
-  e.x0 = e.x1 = hn::Mul(x.at(0), inverse);
-  e.y0 = e.y1 = hn::Mul(y.at(0), inverse);
+  const Vec first_x = hn::Mul(x.at(0), inverse), first_y = hn::Mul(y.at(0), inverse);
+  Extent<D> e{first_x, first_x, first_y, first_y};
   for (std::size_t corner = 1; corner < 8; ++corner) {
     inverse = hn::Div(one, z.at(corner));
     const Vec qx = hn::Mul(x.at(corner), inverse), qy = hn::Mul(y.at(corner), inverse);
