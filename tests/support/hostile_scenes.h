@@ -25,7 +25,8 @@ struct HostileScene {
   std::uint32_t first_target = 0;    // the objects from here on are to be culled
 };
 
-// The same seed makes the same scene, on every machine.
+// The same seed makes the same scene with one compiler on one kind of machine: in which order the arguments
+// of a call are drawn is the compiler's choice, and GCC chooses another one for ARM than for x86.
 class HostileSceneMaker {
  public:
   explicit HostileSceneMaker(std::uint64_t seed) : random_(seed), of_contacts_(seed % 15 == 14) {}
