@@ -307,7 +307,7 @@ VisibilityProof::Cover VisibilityProof::findBlockers(const Target& target, const
 // the scene, so the first hit is before a triangle unless it is that triangle.
 bool VisibilityProof::isBefore(const RayHit& hit, const Target& target) const {
   if (target.kind == TargetKind::kTriangle) {
-    return hit.first_index != target.first_index;
+    return hit.first_index != target.first_index;  // also of another object with the same corners: a tie
   }
   const View& view = space_.view();
   const double depth = view.z_near + static_cast<double>(hit.t);

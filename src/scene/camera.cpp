@@ -52,8 +52,8 @@ Mat4 clipFromScene(const View& view) {
     view_from_scene(row, 3) = -dot(axes[row], view.eye);
   }
   Mat4 clip_from_view;
-  // Limits for far -> infinity: (far + near) / (far - near) -> 1, far / (far - near) -> 1. Doubles are so
-  // close to them long before the products overflow.
+  // Limits for far -> infinity: (far + near) / (far - near) -> 1, far / (far - near) -> 1. In doubles, they
+  // are reached at this ratio.
   const bool endless = view.z_near <= 0x1p-60 * view.z_far;
   const double depth = view.z_far - view.z_near;
   const double middle = endless ? 1.0 : (view.z_far + view.z_near) / depth;

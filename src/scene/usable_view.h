@@ -9,7 +9,7 @@ bool makeUnit(Vec3d& axis);
 
 // Normalises right, up and forward in the same way. A left-handed basis stays one.
 bool makeAxesUnit(View& view);
-// The same for a copy. An axis without a direction stays as it is.
+// A copy of the view whose axes makeAxesUnit() has normalised. An axis without a direction stays as it is.
 View withUnitAxes(const View& view);
 
 // Whether right, up and forward, of unit length, are a left-handed basis: the picture is mirrored.

@@ -224,6 +224,18 @@ TEST_F(LayerRendererTest, DepthsEndNowhereIfTheFarPlaneIsFarOrInfinite) {
   }
 }
 
+TEST_F(LayerRendererTest, DepthsOfAnOrthographicViewWithoutEndAreTheNearDistance) {
+  SceneMaker maker;
+  maker.wall(0.0, 1.0, kRed);
+  LayerRenderer layers = layersOf(maker.scene);
+  View view = testView();
+  view.orthographic = true;
+  view.z_far = std::numeric_limits<double>::infinity();
+  const LayerImage image = drawn(layers, view, allOf(maker.scene), {.depths = true});
+  EXPECT_EQ(image.depths[kHeight / 2 * kWidth + kWidth / 2], static_cast<float>(view.z_near));
+  EXPECT_EQ(image.depths[0], LayerImage::kNoDepth);
+}
+
 // A view whose axes have other lengths and the same directions.
 View stretched(View view, double right, double up, double forward) {
   view.right = view.right * right;

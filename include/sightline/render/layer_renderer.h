@@ -56,7 +56,8 @@ struct LayerDraw {
   // they are given, not by their ids.
   bool as_given = false;
   // Also fills LayerImage::depths with the depth of the nearest surface, opaque or not. Depths err by a few
-  // units in the last place; in orthographic views by as much of the far distance.
+  // units in the last place; in orthographic views by as much of the far distance, and where that is
+  // infinite they are all the near distance.
   bool depths = false;
   // Leaves out what is behind the surfaces that the last hideBehind() drew, which must have had the same view
   // and lens. Where those are nearest, LayerImage::depths has their depths.

@@ -59,7 +59,8 @@ struct ReuseStats {
 //  - the view's kind or its near or far distance has changed, or whether the layer is peeled,
 //  - its depths are asked for, it is drawn as given (LayerDraw::as_given) or without what others hide of it
 //    (LayerDraw::hidden), some of its objects are in pieces (LayerRenderer::setPieces), or it is seen from a
-//    point of the lens other than the middle; such images are not kept either,
+//    point of the lens other than the middle; such images are not kept either. What hides them must have been
+//    drawn for the picture with its guard band, so LayerDraw::hidden needs guard_px = 0,
 //  - one of its transforms or the view is not finite.
 // With a tolerance of 0 an image is reused only if neither its objects nor the view have moved at all. Errors
 // are measured at the characteristic points, up to 26 for each object: the farthest vertices in as many

@@ -52,7 +52,7 @@ struct PartBlur {
 // Where everything moves from one frame to the next, for motion blur. Everything is taken to move in straight
 // lines, from half the shutter's time before this frame to half of it after.
 struct FrameMotion {
-  View later = {};                          // the view of the next frame
+  View later = {};                          // the view of the next frame, of the same handedness
   std::span<const Mat4> stored = {};        // scene_from_stored in this frame, one for each object, or empty
   std::span<const Mat4> later_stored = {};  // the same in the next frame
   double shutter = 0.5;                     // share of a frame's time that the shutter is open, 0 to 1

@@ -97,8 +97,8 @@ bool PartOcclusion::hullsOcclude(std::uint32_t front, std::uint32_t back, bool w
   const bool occludes = anyHullPair(front, back, Reach::kToTheEye, [&](std::uint32_t i, std::uint32_t j) {
     return hullOccludes(front, i, back, j, erosion);
   });
-  return occludes &&
-         (!without_rule || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
+  return occludes && (!without_rule || !collide(front, back) || may_touch ||
+                      containment(front, back) != Verdict::kDoesNot);
 }
 
 std::span<const Arc> PartOcclusion::collisions() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -61,13 +62,14 @@ void place(const std::vector<T>& pixels, const PixelRect& rect, std::size_t widt
 
 // Converts values of the depth buffer to metres. With the near distance n and the far distance f, depth z is
 // stored as d = n (f - z) / (z (f - n)), so that z = n / (d (1 - n / f) + n / f), where f may be infinite; in
-// orthographic views it is stored as (f - z) / (f - n). 0 means that nothing was drawn.
+// orthographic views it is stored as (f - z) / (f - n), of which nothing can be read where f is infinite. 0
+// means that nothing was drawn.
 void toMetres(const View& view, std::vector<float>& depths) {
   const double near = view.z_near, range = view.z_far - near, share = near / view.z_far;
   for (float& depth : depths) {
     const double d = depth;
     depth = d == 0.0            ? LayerImage::kNoDepth
-            : view.orthographic ? static_cast<float>(view.z_far - d * range)
+            : view.orthographic ? static_cast<float>(std::isfinite(range) ? view.z_far - d * range : near)
                                 : static_cast<float>(near / (d * (1.0 - share) + share));
   }
 }

@@ -77,7 +77,7 @@ Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, co
                       .eye_low = glGetUniformLocation(*id, "eye_low"),
                       .lens_offset = glGetUniformLocation(*id, "lens_offset"),
                       .haze = glGetUniformLocation(*id, "haze"),
-                      .towards_eye = glGetUniformLocation(*id, "towards_eye"),
+                      .normal_sign = glGetUniformLocation(*id, "normal_sign"),
                       .depth_scale = glGetUniformLocation(*id, "depth_scale"),
                       .cut_count = glGetUniformLocation(*id, "cut_count"),
                       .cut_fronts = glGetUniformLocation(*id, "cut_fronts"),
@@ -100,7 +100,7 @@ void useProgram(const SceneProgram& program, const View& view, float haze, float
   glUniform3f(program.eye_low, low.x, low.y, low.z);
   glUniform3f(program.lens_offset, from_eye.x, from_eye.y, from_eye.z);
   glUniform1f(program.haze, haze);
-  glUniform1f(program.towards_eye, mirrored ? -1.0f : 1.0f);
+  glUniform1f(program.normal_sign, mirrored ? -1.0f : 1.0f);
   glUniform1f(program.depth_scale, depth_scale);
 }
 

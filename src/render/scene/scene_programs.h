@@ -21,7 +21,7 @@ inline constexpr GLint kColorsUnit = 0, kPlacesUnit = 1, kBehindUnit = 2;
 // A linked program of a vertex shader for the scene and a fragment shader, with its uniforms.
 struct SceneProgram {
   GLuint id = 0;
-  GLint clip_from_relative = -1, eye_high = -1, eye_low = -1, lens_offset = -1, haze = -1, towards_eye = -1,
+  GLint clip_from_relative = -1, eye_high = -1, eye_low = -1, lens_offset = -1, haze = -1, normal_sign = -1,
         depth_scale = -1;
   GLint cut_count = -1, cut_fronts = -1, cuts = -1;  // of layers: see setSides()
 };
@@ -29,15 +29,15 @@ struct SceneProgram {
 Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, const char* geometry = nullptr,
                                       const char* vertex = nullptr);
 
-// Views of what follows have axes of unit length.
+// The views given to the functions below have axes of unit length.
 
 // The vector from the eye to the lens point in scene space.
 Vec3d lensOffset(const View& view, const LensPoint& lens);
 // Takes positions relative to the lens point to clip space. Depth lies in [0, w], w on the near plane.
 Mat4 reversedClipFromRelative(const View& view, const LensPoint& lens);
 
-// Makes the program current, sets the view's uniforms, and which winding fronts have: in a left-handed view,
-// whose picture is mirrored, the other one. haze is 1 / d^2, where d is the distance in metres
+// Makes the program current and sets the view's uniforms, and glFrontFace: fronts are counter-clockwise, and
+// clockwise in the mirrored picture of a left-handed view. haze is 1 / d^2, where d is the distance in metres
 // at which haze is half. Everything is moved away from the eye by about 1 - depth_scale of its distance.
 void useProgram(const SceneProgram& program, const View& view, float haze, float depth_scale = 1.0f,
                 const LensPoint& lens = {});

@@ -61,16 +61,16 @@ void main() {
 
 // Light and shade of flat faces: sun, sky and a small difference between walls, then haze by distance. In
 // linear light; pictures of eight bits hold its square root. The normal of a face is the one towards the eye:
-// towards_eye is 1, and -1 where the picture is mirrored.
+// normal_sign is 1, and -1 where the picture is mirrored.
 #define SIGHTLINE_SHADE                                                                                  \
   "in vec3 relative;\n"                                                                                  \
   "flat in vec4 color;\n"                                                                                \
   "uniform float haze;\n"                                                                                \
-  "uniform float towards_eye;\n"                                                                         \
+  "uniform float normal_sign;\n"                                                                         \
   "out vec4 result;\n"                                                                                   \
   "vec3 linearLight() {\n"                                                                               \
   "  vec3 n = cross(dFdx(relative), dFdy(relative));\n"                                                  \
-  "  n *= towards_eye * inversesqrt(max(dot(n, n), 1e-36));\n"                                           \
+  "  n *= normal_sign * inversesqrt(max(dot(n, n), 1e-36));\n"                                           \
   "  float sun = max(dot(n, vec3(0.4286, 0.7845, 0.4482)), 0.0);\n"                                      \
   "  float sky = dot(n, vec3(0.035, 0.09, -0.02)) + 0.33;\n"                                             \
   "  vec3 lit = color.rgb * color.rgb * (sky * vec3(0.95, 1.0, 1.08) + sun * vec3(0.52, 0.49, 0.43));\n" \
