@@ -67,7 +67,8 @@ function(sightline_options target)
     target_compile_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS} -fno-sanitize-recover=all
       -fno-omit-frame-pointer -UNDEBUG -Og -g1)
     # Vector code is compiled without SSSE3 and SSE4: their vectors are as long as those of SSE2, so that they touch the
-    # same memory, and the release tests force every instruction set, so that no test is lost.
+    # same memory, and the release tests force every instruction set, so that no test is lost. Nor is one by the sets
+    # without a fixed size, for which nothing is compiled in any build.
     target_compile_definitions(${target} PRIVATE
       "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|${SIGHTLINE_UNSIZED_TARGETS})")
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
@@ -75,6 +76,7 @@ function(sightline_options target)
       target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
     endif()
   elseif(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "86|AMD64")
+    # The vector code does not compile for these sets (above). No test is left out: all run on each set that is left.
     target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(${SIGHTLINE_UNSIZED_TARGETS})")
   endif()
 endfunction()

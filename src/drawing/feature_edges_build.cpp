@@ -135,7 +135,7 @@ void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
   const Vec3d ab = b - a;
   const double length_ab = length(ab);
   const occluders::NearLine line(a, b, 2.0 * tolerance_);
-  const auto test = [&](std::uint32_t corner) {
+  const auto addIfOnEdge = [&](std::uint32_t corner) {
     const Vec3d ac = at(corner) - a;
     const double along = dot(ac, ab) / length_ab;
     const bool between = along > tolerance_ && along < length_ab - tolerance_;
@@ -145,7 +145,7 @@ void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
   };
   boxes_->forMeeting(
       occluders::grownBox(min(a, b), max(a, b), tolerance_),
-      [&line](const Box& box) { return line.mayMeet(box); }, test);
+      [&line](const Box& box) { return line.mayMeet(box); }, addIfOnEdge);
   std::sort(on_edge_.begin(), on_edge_.end(), [](const OnEdge& p, const OnEdge& q) {
     return std::tie(p.share, p.corner) < std::tie(q.share, q.corner);
   });

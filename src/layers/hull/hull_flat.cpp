@@ -188,8 +188,8 @@ ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
       ring.push_back(p.number);
     }
     setRing(hull, points, ring, numbers);
-    // Of a polygon that is hardly wider than the tolerance, only the two ends of the longest chord may be
-    // left. All points are as close to their segment as they would be to a polygon.
+    // A polygon that is hardly wider than the tolerance may keep only the two ends of its longest chord. All
+    // points are as close to their segment as they would be to a polygon.
     hull.dimension = ring.size() > 2 ? 2 : 1;
     hull.slack = kSqrt3 * (4.0 * (frame.off_plane + rounding) + left_out);
   }
