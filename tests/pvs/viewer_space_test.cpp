@@ -8,6 +8,7 @@
 
 #include "oracle/exact_visibility.h"
 #include "tests/pvs/bake_scenes.h"
+#include "tests/support/hand_made.h"
 
 namespace sightline {
 namespace {
@@ -244,6 +245,127 @@ TEST(FreeSpace, HoldsWhereAWanderingViewerGets) {
       }
     }
   }
+}
+
+// What findFreeSpace() gives for rectangles across the axes, searched voxel by voxel: edges of one metre.
+class PlainSearch {
+ public:
+  static constexpr int kSize[3] = {70, 7, 6};
+
+  PlainSearch(std::span<const Box> rectangles, const Vec3d& start, int max_height) {
+    forEach([&](int x, int y, int z) {
+      const Vec3f low(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+      const Box voxel{low, low + Vec3f(1, 1, 1)};
+      blocked(x, y, z) = std::any_of(rectangles.begin(), rectangles.end(),
+                                     [&](const Box& box) { return overlaps(voxel, box); });
+    });
+    const int at[3] = {static_cast<int>(start.x), static_cast<int>(start.y), static_cast<int>(start.z)};
+    reach(at[0], at[1], at[2]);
+    forEach(
+        [&](int x, int y, int z) { kept(x, y, z) = reached(x, y, z) && nearGround(x, y, z, max_height); });
+    kept(at[0], at[1], at[2]) = true;
+  }
+
+  bool any() const { return std::find(reached_.begin(), reached_.end(), true) != reached_.end(); }
+  // Whether the voxel or one beside it is kept.
+  bool holds(int x, int y, int z) const {
+    for (int i = 0; i < 27; ++i) {
+      const int at[3] = {x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1};
+      if (inside(at[0], at[1], at[2]) && kept_[indexOf(at[0], at[1], at[2])]) {
+        return true;
+      }
+    }
+    return false;
+  }
+  template <typename Visit>
+  static void forEach(Visit&& visit) {
+    for (int z = 0; z < kSize[2]; ++z) {
+      for (int y = 0; y < kSize[1]; ++y) {
+        for (int x = 0; x < kSize[0]; ++x) {
+          visit(x, y, z);
+        }
+      }
+    }
+  }
+
+ private:
+  using Bits = std::vector<bool>;
+  static constexpr std::size_t kVoxels = std::size_t{70} * 7 * 6;
+
+  static bool inside(int x, int y, int z) {
+    return x >= 0 && y >= 0 && z >= 0 && x < kSize[0] && y < kSize[1] && z < kSize[2];
+  }
+  static std::size_t indexOf(int x, int y, int z) {
+    return static_cast<std::size_t>((z * kSize[1] + y) * kSize[0] + x);
+  }
+  Bits::reference blocked(int x, int y, int z) { return blocked_[indexOf(x, y, z)]; }
+  Bits::reference reached(int x, int y, int z) { return reached_[indexOf(x, y, z)]; }
+  Bits::reference kept(int x, int y, int z) { return kept_[indexOf(x, y, z)]; }
+  void reach(int x, int y, int z) {
+    if (!inside(x, y, z) || blocked(x, y, z) || reached(x, y, z)) {
+      return;
+    }
+    reached(x, y, z) = true;
+    for (const int step : {-1, 1}) {
+      reach(x + step, y, z);
+      reach(x, y + step, z);
+      reach(x, y, z + step);
+    }
+  }
+  bool nearGround(int x, int y, int z, int max_height) {
+    for (int below = 1; below <= max_height + 1; ++below) {
+      if (y - below >= 0 && blocked(x, y - below, z)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Bits blocked_ = Bits(kVoxels), reached_ = Bits(kVoxels), kept_ = Bits(kVoxels);
+};
+
+TEST(FreeSpace, IsWhatAPlainSearchFinds) {
+  constexpr int kScenes = 60;
+  int found_any = 0;
+  for (std::uint32_t seed = 1; seed <= kScenes; ++seed) {
+    std::mt19937 random(seed);
+    // Halves of a metre: some rectangles lie in the borders of voxels.
+    const auto halves = [&](int low, int high) {
+      return 0.5f * static_cast<float>(std::uniform_int_distribution<int>(low, high)(random));
+    };
+    std::vector<Box> rectangles;
+    Scene scene;
+    scene.materials.emplace_back();
+    for (int i = 0; i < 30; ++i) {
+      const int across = static_cast<int>(seed + static_cast<std::uint32_t>(i)) % 3;
+      const int u = (across + 1) % 3, v = (across + 2) % 3;
+      Vec3f low(halves(-4, 144), halves(-4, 18), halves(-4, 16));
+      Vec3f high = low + Vec3f(halves(1, 60), halves(1, 10), halves(1, 8));
+      high[across] = low[across];
+      rectangles.push_back({low, high});
+      Vec3f second = low, fourth = low;
+      second[u] = high[u];
+      fourth[v] = high[v];
+      hand_made::addTriangles(scene, MaterialId(0u), std::array{low, second, high, low, high, fourth});
+    }
+    updateBounds(scene);
+    const int max_height = static_cast<int>(seed % 8);
+    const Vec3d start(0.5 + static_cast<double>(seed % 70), 3.5, 2.5);
+    const PlainSearch plain(rectangles, start, max_height);
+    const Result<FreeSpace> space = findFreeSpace(scene.view(), std::span(&start, 1),
+                                                  {.voxel = 1.0,
+                                                   .max_height = static_cast<double>(max_height),
+                                                   .region = {{0, 0, 0}, {69.9f, 6.9f, 5.9f}}});
+    if (!plain.any() || !space) {
+      continue;
+    }
+    ++found_any;
+    PlainSearch::forEach([&](int x, int y, int z) {
+      EXPECT_EQ(within(space->boxes, Vec3d(x, y, z) + Vec3d(0.5, 0.5, 0.5)), plain.holds(x, y, z))
+          << "seed " << seed << ": " << x << ' ' << y << ' ' << z;
+    });
+  }
+  EXPECT_GT(found_any, kScenes / 3);
 }
 
 TEST(FreeSpace, HasEachPlaceOnceAndIsTheSameForAnyThreads) {

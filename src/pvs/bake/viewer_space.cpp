@@ -16,8 +16,49 @@ using Place = std::array<int, 3>;  // a voxel, x, y and z
 
 // A range of voxels.
 struct Block {
-  Place min, max;  // max is one past the last
+  Place min{}, max{};  // max is one past the last
 };
+
+// Calls visit(word, mask) for the words of a row that hold its bits from first up to and with last.
+template <typename Visit>
+void forEachWord(std::size_t first, std::size_t last, Visit&& visit) {
+  for (std::size_t word = first / 64; word <= last / 64; ++word) {
+    const std::uint64_t from = ~std::uint64_t{0} << (word == first / 64 ? first % 64 : 0);
+    const std::uint64_t to = ~std::uint64_t{0} >> (word == last / 64 ? 63 - last % 64 : 0);
+    visit(word, from & to);
+  }
+}
+
+// The first bit from this one on that is set, or that is clear; past the row's words where there is none.
+std::size_t nextBit(std::span<const std::uint64_t> row, std::size_t from, bool set) {
+  while (from < 64 * row.size()) {
+    const std::uint64_t word = (set ? row[from / 64] : ~row[from / 64]) >> (from % 64);
+    if (word != 0) {
+      return from + static_cast<std::size_t>(std::countr_zero(word));
+    }
+    from = 64 * (from / 64 + 1);
+  }
+  return 64 * row.size();
+}
+
+// The first bit of the run of set bits that ends before this one; `before` itself where there is none.
+std::size_t runBefore(std::span<const std::uint64_t> row, std::size_t before) {
+  while (before > 0) {
+    const std::size_t word = (before - 1) / 64;
+    const std::uint64_t clear = ~row[word] << (63 - (before - 1) % 64);
+    if (clear != 0) {
+      return before - static_cast<std::size_t>(std::countl_zero(clear));
+    }
+    before = 64 * word;
+  }
+  return 0;
+}
+
+void orInto(std::span<std::uint64_t> row, std::span<const std::uint64_t> other) {
+  for (std::size_t word = 0; word < row.size(); ++word) {
+    row[word] |= other[word];
+  }
+}
 
 // A bit for each voxel of a grid, in rows along x.
 class VoxelBits {
@@ -34,9 +75,24 @@ class VoxelBits {
   bool at(const Place& p) const { return (row(p[1], p[2])[wordOf(p)] & bitOf(p)) != 0; }
   void set(const Place& p) { row(p[1], p[2])[wordOf(p)] |= bitOf(p); }
   // Does what set() does; several threads may call it at a time.
-  void setTogether(const Place& p) {
-    std::uint64_t& word = row(p[1], p[2])[wordOf(p)];
-    std::atomic_ref<std::uint64_t>(word).fetch_or(bitOf(p), std::memory_order_relaxed);
+  void setTogether(const Place& p) { orTogether(row(p[1], p[2])[wordOf(p)], bitOf(p)); }
+  // Sets a row of voxels along an axis, up to and with the last one; several threads may call it at a time.
+  void setRowTogether(const Place& first, const Place& last, std::size_t axis) {
+    if (axis == 0) {
+      const std::span<std::uint64_t> words = row(first[1], first[2]);
+      forEachWord(static_cast<std::size_t>(first[0]), static_cast<std::size_t>(last[0]),
+                  [&](std::size_t word, std::uint64_t mask) { orTogether(words[word], mask); });
+      return;
+    }
+    for (Place p = first; p[axis] <= last[axis]; ++p[axis]) {
+      setTogether(p);
+    }
+  }
+  void invert() {
+    const std::uint64_t past_end = ~std::uint64_t{0} >> (size_[0] % 64 == 0 ? 0 : 64 - size_[0] % 64);
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      words_[i] = ~words_[i] & ((i + 1) % row_words_ == 0 ? past_end : ~std::uint64_t{0});
+    }
   }
   std::span<std::uint64_t> row(int y, int z) {
     return std::span(words_).subspan(row_words_ * rowIndex(y, z), row_words_);
@@ -47,6 +103,9 @@ class VoxelBits {
 
  private:
   static std::size_t wordOf(const Place& p) { return static_cast<std::size_t>(p[0]) / 64; }
+  static void orTogether(std::uint64_t& word, std::uint64_t bits) {
+    std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
+  }
   static std::uint64_t bitOf(const Place& p) { return std::uint64_t{1} << (p[0] % 64); }
   std::size_t rowIndex(int y, int z) const {
     return static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y);
@@ -71,13 +130,12 @@ struct Grid {
   }
   double border(int axis, int at) const { return min[axis] + voxel * at; }
   // Beyond the grid where the point is.
-  Place placeOf(const Vec3d& p) const {
-    Place place{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double at = std::floor((p[static_cast<int>(axis)] - min[static_cast<int>(axis)]) / voxel);
-      place[axis] = static_cast<int>(std::clamp(at, -1e9, 1e9));
-    }
-    return place;
+  Place placeOf(const Vec3d& p) const { return {placeAlong(0, p.x), placeAlong(1, p.y), placeAlong(2, p.z)}; }
+  // The first and the last voxel along an axis that something from low to high touches. What lies in the
+  // border of two voxels touches both.
+  std::pair<int, int> touched(int axis, double low, double high) const {
+    const int first = placeAlong(axis, low), last = placeAlong(axis, high);
+    return {border(axis, first) >= low ? first - 1 : first, border(axis, last + 1) <= high ? last + 1 : last};
   }
   Box boxOf(const Block& block) const {
     Box box;
@@ -87,6 +145,11 @@ struct Grid {
       box.max[axis] = static_cast<float>(border(axis, block.max[i]));
     }
     return box;
+  }
+
+ private:
+  int placeAlong(int axis, double at) const {
+    return static_cast<int>(std::clamp(std::floor((at - min[axis]) / voxel), -1e9, 1e9));
   }
 };
 
@@ -127,27 +190,38 @@ Polygon clip(const Polygon& polygon, int axis, double at, bool upper) {
   return part;
 }
 
-// Sets the voxels of the block that the polygon touches.
-void mark(const Grid& grid, const Polygon& polygon, const Block& block, VoxelBits& bits) {
+// Sets the voxels that the polygon touches of a block that is one row along this axis.
+void markRow(const Grid& grid, const Polygon& polygon, const Block& row, std::size_t along, VoxelBits& bits) {
+  const int axis = static_cast<int>(along);
+  double low = polygon.vertices[0][axis], high = low;
+  for (std::size_t i = 1; i < polygon.count; ++i) {
+    low = std::min(low, polygon.vertices[i][axis]);
+    high = std::max(high, polygon.vertices[i][axis]);
+  }
+  const auto [touched_first, touched_last] = grid.touched(axis, low, high);
+  Place first = row.min, last = row.min;
+  first[along] = std::clamp(touched_first, row.min[along], row.max[along] - 1);
+  last[along] = std::clamp(touched_last, first[along], row.max[along] - 1);
+  bits.setRowTogether(first, last, along);
+}
+
+// Sets the voxels of the block that the polygon touches. The block is halved down to rows along this axis.
+void mark(const Grid& grid, const Polygon& polygon, const Block& block, std::size_t along, VoxelBits& bits) {
   if (polygon.count == 0) {
     return;
   }
-  std::size_t longest = 0;
-  for (std::size_t axis = 1; axis < 3; ++axis) {
-    if (block.max[axis] - block.min[axis] > block.max[longest] - block.min[longest]) {
-      longest = axis;
-    }
-  }
-  const int middle = (block.min[longest] + block.max[longest]) / 2;
-  if (middle == block.min[longest]) {
-    bits.setTogether(block.min);
+  const std::size_t u = (along + 1) % 3, v = (along + 2) % 3;
+  const std::size_t longer = block.max[u] - block.min[u] >= block.max[v] - block.min[v] ? u : v;
+  const int middle = (block.min[longer] + block.max[longer]) / 2;
+  if (middle == block.min[longer]) {
+    markRow(grid, polygon, block, along, bits);
     return;
   }
-  const int axis = static_cast<int>(longest);
+  const int axis = static_cast<int>(longer);
   for (const bool upper : {false, true}) {
     Block half = block;
-    (upper ? half.min : half.max)[longest] = middle;
-    mark(grid, clip(polygon, axis, grid.border(axis, middle), upper), half, bits);
+    (upper ? half.min : half.max)[longer] = middle;
+    mark(grid, clip(polygon, axis, grid.border(axis, middle), upper), half, along, bits);
   }
 }
 
@@ -161,12 +235,13 @@ void markTriangle(const Grid& grid, const std::array<Vec3d, 3>& triangle, VoxelB
   }
   const Vec3d low = min(min(triangle[0], triangle[1]), triangle[2]);
   const Vec3d high = max(max(triangle[0], triangle[1]), triangle[2]);
-  Block block{grid.placeOf(low), grid.placeOf(high)};
+  Block block;
+  std::size_t longest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const int axis = static_cast<int>(i);
-    // A triangle in the border of two voxels touches both.
-    block.min[i] -= grid.border(axis, block.min[i]) >= low[axis] ? 1 : 0;
-    block.max[i] += 1;
+    const auto [first, last] = grid.touched(axis, low[axis], high[axis]);
+    block.min[i] = first;
+    block.max[i] = last + 1;
     if (block.min[i] < 0) {
       block.min[i] = 0;
       polygon = clip(polygon, axis, grid.border(axis, 0), true);
@@ -178,8 +253,11 @@ void markTriangle(const Grid& grid, const std::array<Vec3d, 3>& triangle, VoxelB
     if (block.min[i] >= block.max[i]) {
       return;
     }
+    if (block.max[i] - block.min[i] > block.max[longest] - block.min[longest]) {
+      longest = i;
+    }
   }
-  mark(grid, polygon, block, bits);
+  mark(grid, polygon, block, longest, bits);
 }
 
 VoxelBits touchedByOpaque(const SceneView& scene, const Grid& grid, const ParallelFor& parallel_for) {
@@ -199,37 +277,37 @@ VoxelBits touchedByOpaque(const SceneView& scene, const Grid& grid, const Parall
   return bits;
 }
 
-// Adds to `reached` all voxels that are connected by their faces with this one and not blocked.
-void flood(const VoxelBits& blocked, const Place& start, VoxelBits& reached) {
-  const auto open = [&](const Place& p) { return blocked.holds(p) && !blocked.at(p) && !reached.at(p); };
+// Moves all voxels that are connected by their faces with this one from `open` to `reached`.
+void flood(const Place& start, VoxelBits& open, VoxelBits& reached) {
   std::vector<Place> seeds{start};
   while (!seeds.empty()) {
-    const Place seed = seeds.back();
+    const auto [x, y, z] = seeds.back();
     seeds.pop_back();
-    if (!open(seed)) {
+    if (!open.at({x, y, z})) {
       continue;
     }
     // The run of open voxels along x, and one seed for each run beside it.
-    Place first = seed, last = seed;
-    while (open({first[0] - 1, seed[1], seed[2]})) {
-      --first[0];
-    }
-    while (open({last[0] + 1, seed[1], seed[2]})) {
-      ++last[0];
-    }
-    for (int x = first[0]; x <= last[0]; ++x) {
-      reached.set({x, seed[1], seed[2]});
-    }
-    for (const auto& [y, z] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-      bool was_open = false;
-      for (int x = first[0]; x <= last[0]; ++x) {
-        const Place beside{x, seed[1] + y, seed[2] + z};
-        const bool is_open = open(beside);
-        if (is_open && !was_open) {
-          seeds.push_back(beside);
-        }
-        was_open = is_open;
+    const std::span<std::uint64_t> row = open.row(y, z), reached_row = reached.row(y, z);
+    const std::size_t first = runBefore(row, static_cast<std::size_t>(x));
+    const std::size_t last = nextBit(row, static_cast<std::size_t>(x), false) - 1;
+    forEachWord(first, last, [&](std::size_t word, std::uint64_t mask) {
+      row[word] &= ~mask;
+      reached_row[word] |= mask;
+    });
+    for (const Place& beside : {Place{x, y - 1, z}, {x, y + 1, z}, {x, y, z - 1}, {x, y, z + 1}}) {
+      if (!open.holds(beside)) {
+        continue;
       }
+      const std::span<const std::uint64_t> other = open.row(beside[1], beside[2]);
+      std::uint64_t before = 0;  // whether the last bit of the word before is open
+      forEachWord(first, last, [&](std::size_t word, std::uint64_t mask) {
+        const std::uint64_t runs = other[word] & mask;
+        for (std::uint64_t starts = runs & ~(runs << 1 | before); starts != 0; starts &= starts - 1) {
+          const std::size_t at = 64 * word + static_cast<std::size_t>(std::countr_zero(starts));
+          seeds.push_back({static_cast<int>(at), beside[1], beside[2]});
+        }
+        before = runs >> 63;
+      });
     }
   }
 }
@@ -253,18 +331,18 @@ void forEachNear(const Place& centre, int distance, Visit&& visit) {
 // Removes the voxels that are higher than this above a blocked one, or above none.
 void cutAbove(const VoxelBits& blocked, double voxels, VoxelBits& reached) {
   const Place size = blocked.size();
-  std::vector<int> ground(static_cast<std::size_t>(size[0]));  // the last blocked voxel below
+  const int below =
+      1 + static_cast<int>(std::min<double>(voxels, size[1]));  // as many layers hold its ground
+  std::vector<std::uint64_t> above_ground(blocked.row(0, 0).size());
   for (int z = 0; z < size[2]; ++z) {
-    std::fill(ground.begin(), ground.end(), -1);
     for (int y = 0; y < size[1]; ++y) {
+      std::fill(above_ground.begin(), above_ground.end(), 0);
+      for (int ground = std::max(y - below, 0); ground < y; ++ground) {
+        orInto(above_ground, blocked.row(ground, z));
+      }
       const std::span<std::uint64_t> row = reached.row(y, z);
-      for (int x = 0; x < size[0]; ++x) {
-        int& below = ground[static_cast<std::size_t>(x)];
-        if (blocked.at({x, y, z})) {
-          below = y;
-        } else if (below < 0 || y - below - 1 > voxels) {
-          row[static_cast<std::size_t>(x) / 64] &= ~(std::uint64_t{1} << (x % 64));
-        }
+      for (std::size_t word = 0; word < row.size(); ++word) {
+        row[word] &= above_ground[word];
       }
     }
   }
@@ -298,10 +376,7 @@ void widen(VoxelBits& bits) {
           if (!bits.holds({0, y + dy, z + dz})) {
             continue;
           }
-          const std::span<const std::uint64_t> other = along_x.row(y + dy, z + dz);
-          for (std::size_t w = 0; w < row.size(); ++w) {
-            row[w] |= other[w];
-          }
+          orInto(row, along_x.row(y + dy, z + dz));
         }
       }
     }
@@ -311,20 +386,10 @@ void widen(VoxelBits& bits) {
 // Calls visit(begin, end) for the runs of voxels that are set in a row.
 template <typename Visit>
 void forEachRun(std::span<const std::uint64_t> row, Visit&& visit) {
-  const auto next = [&](std::size_t from, bool set) {
-    while (from < 64 * row.size()) {
-      const std::uint64_t word = (set ? row[from / 64] : ~row[from / 64]) >> (from % 64);
-      if (word != 0) {
-        return from + static_cast<std::size_t>(std::countr_zero(word));
-      }
-      from = 64 * (from / 64 + 1);
-    }
-    return 64 * row.size();
-  };
-  for (std::size_t begin = next(0, true); begin < 64 * row.size();) {
-    const std::size_t end = next(begin, false);
+  for (std::size_t begin = nextBit(row, 0, true); begin < 64 * row.size();) {
+    const std::size_t end = nextBit(row, begin, false);
     visit(static_cast<int>(begin), static_cast<int>(end));
-    begin = next(end, true);
+    begin = nextBit(row, end, true);
   }
 }
 
@@ -435,6 +500,8 @@ Result<FreeSpace> findFreeSpace(const SceneView& scene, std::span<const Vec3d> f
       settings.voxel > 0.0 ? settings.voxel : chosenVoxel(Vec3d(region.max) - Vec3d(region.min));
   const Grid grid(region, voxel);
   const VoxelBits blocked = touchedByOpaque(scene, grid, parallel_for);
+  VoxelBits open = blocked;
+  open.invert();
   VoxelBits reached(grid.size);
   constexpr int kStartReach = 2;  // voxels
   bool any = false;
@@ -444,7 +511,7 @@ Result<FreeSpace> findFreeSpace(const SceneView& scene, std::span<const Vec3d> f
     forEachNear(place, blocked.holds(place) ? kStartReach : -1, [&](const Place& near) {
       // The closest free voxels only: others may be on the other side of a wall.
       if (!found && blocked.holds(near) && !blocked.at(near)) {
-        flood(blocked, near, reached);
+        flood(near, open, reached);
         found = any = true;
       }
     });
