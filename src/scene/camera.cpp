@@ -71,7 +71,7 @@ Mat4 clipFromScene(const View& view) {
     clip_from_view(0, 2) = view.shift_x;
     clip_from_view(1, 2) = view.shift_y;
     clip_from_view(2, 2) = -middle;
-    clip_from_view(2, 3) = endless ? -2.0 * view.z_near : -2.0 * view.z_far * view.z_near / depth;
+    clip_from_view(2, 3) = -2.0 * view.z_near * (endless ? 1.0 : view.z_far / depth);
     clip_from_view(3, 2) = -1.0;
     clip_from_view(3, 3) = 0.0;
   }
@@ -112,9 +112,10 @@ Frustum frustumOf(const View& given) {
     frustum.planes[3] = beyond(view.forward * up - view.up, 0.0);
   }
   frustum.planes[4] = beyond(view.forward, view.z_near);
-  // An infinite offset would make the plane NaN; this one is beyond all boxes.
-  constexpr double kFarthest = 0x1p500;
-  frustum.planes[5] = beyond(-view.forward, -std::min(view.z_far, kFarthest));
+  // An infinite offset would make the plane NaN. This one is beyond all boxes, wherever the eye is.
+  constexpr double kBeyondBoxes = 0x1p500;
+  frustum.planes[5] = view.z_far < kBeyondBoxes ? beyond(-view.forward, -view.z_far)
+                                                : Plane{-normalized(view.forward), kBeyondBoxes};
   return frustum;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -85,6 +86,24 @@ TEST_P(OddViews, ScaledAndMirroredAxesAreTheSameView) {
 TEST_P(OddViews, WithoutAFarPlaneTheSameIsHidden) {
   scene_.view.z_far = kInfinite;
   expectVisible(scene_.view, kSeen, "infinite far distance");
+}
+
+// What is seen from there lies within less than the eye's coordinates are rounded by.
+TEST_P(OddViews, FromAnyDistanceNothingInSightIsHidden) {
+  scene_.view.z_far = kInfinite;
+  for (const auto& [name, settings, stands_for_method] : kStructures) {
+    AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
+    for (const double distance :
+         {1e5, 1e10, 1e20, 1e30, 1e39, 1e77, 1e140, 1e154, 1e160, 1e200, 1e300, 1.7e308}) {
+      scene_.view.eye = {0, 0, distance};
+      culler.cull(scene_.view);
+      for (const ObjectId in_sight : {ObjectId(0u), ObjectId(2u), ObjectId(3u), ObjectId(4u)}) {
+        EXPECT_TRUE(std::find(culler.visible().begin(), culler.visible().end(), in_sight) !=
+                    culler.visible().end())
+            << name << ", " << distance << " m, object " << in_sight.value;
+      }
+    }
+  }
 }
 
 TEST_P(OddViews, WithoutANearPlaneTheSameIsHiddenAndWhatIsAtTheEyeIsKept) {

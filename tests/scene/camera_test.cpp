@@ -264,6 +264,19 @@ TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
   EXPECT_NEAR(clip.z, 0.0, 1e-12) << "half way between near and far";
 }
 
+TEST(Camera, NearAndFarPlanesProjectToTheEndsOfClipSpaceAtAnyDistance) {
+  for (const double z_near : {1e-190, 1e-20, 1.0, 1e20, 1e190}) {
+    View view;
+    setOrientation(view, {0, 0, -1}, {0, 1, 0});
+    view.z_near = z_near;
+    view.z_far = 1e10 * z_near;
+    Clip clip = project(clipFromScene(view), {0, 0, -view.z_near});
+    EXPECT_NEAR(clip.z / clip.w, -1.0, 1e-9) << z_near;
+    clip = project(clipFromScene(view), {0, 0, -view.z_far});
+    EXPECT_NEAR(clip.z / clip.w, 1.0, 1e-9) << z_near;
+  }
+}
+
 TEST(Camera, TheMiddleOfAnOffCentrePictureLiesOffTheForwardAxis) {
   View view;
   view.eye = {10, 20, 30};
