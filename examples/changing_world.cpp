@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "sightline/world/world.h"
@@ -39,17 +41,17 @@ WorldMesh unitCube() {
       }
     }
   }
-  const Result<WorldMesh> mesh = makeMesh({.positions = vertices[0].position,
-                                           .position_stride = sizeof(Vertex),
-                                           .vertex_count = static_cast<std::uint32_t>(vertices.size()),
-                                           .indices = indices.data(),
-                                           .index_bytes = 2,
-                                           .index_count = indices.size()});
+  Result<WorldMesh> mesh = makeMesh({.positions = vertices[0].position,
+                                     .position_stride = sizeof(Vertex),
+                                     .vertex_count = static_cast<std::uint32_t>(vertices.size()),
+                                     .indices = indices.data(),
+                                     .index_bytes = 2,
+                                     .index_count = indices.size()});
   if (!mesh) {
     std::fprintf(stderr, "%s\n", mesh.error().message.c_str());
-    return {};
+    std::exit(1);
   }
-  return *mesh;
+  return std::move(*mesh);
 }
 
 Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {

@@ -15,6 +15,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sightline/scene/camera.h"
@@ -266,16 +267,16 @@ class Town {
     }
     indices_ = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    const Result<WorldMesh> mesh = makeMesh({.positions = positions_.data(),
-                                             .vertex_count = 8,
-                                             .indices = indices_.data(),
-                                             .index_bytes = 2,
-                                             .index_count = indices_.size()});
+    Result<WorldMesh> mesh = makeMesh({.positions = positions_.data(),
+                                       .vertex_count = 8,
+                                       .indices = indices_.data(),
+                                       .index_bytes = 2,
+                                       .index_count = indices_.size()});
     if (!mesh) {
       std::fprintf(stderr, "draw_world: %s\n", mesh.error().message.c_str());
       std::exit(1);
     }
-    box_ = world_.addMesh(*mesh);
+    box_ = world_.addMesh(std::move(*mesh));
     build();
   }
 

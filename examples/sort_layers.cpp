@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <vector>
 
-#include "sightline/layers/compositing.h"
 #include "sightline/layers/layer_sorter.h"
 
 using namespace sightline;
@@ -15,6 +14,7 @@ int main() {
   }
   const Result<ConvexHull> box = buildHull(corners);
   if (!box) {
+    std::fprintf(stderr, "%s\n", box.error().message.c_str());
     return 1;
   }
 

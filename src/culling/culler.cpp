@@ -32,9 +32,18 @@ bool usesSets(SetUse use, const CullerSettings& settings) {
   return use == SetUse::kAlways || (use == SetUse::kIfAsked && settings.visible_sets);
 }
 
-bool fitsTogether(const CullingScene& scene, const MethodTraits& traits) {
-  return scene.hierarchy == nullptr ? !traits.hierarchy
-                                    : culling::isOf(*scene.hierarchy, scene.object_bounds);
+// Why the parts of the scene do not belong together; null if they do.
+const char* misfitOf(const CullingScene& scene, const MethodTraits& traits) {
+  if (scene.hierarchy == nullptr) {
+    return traits.hierarchy ? "CullingScene::hierarchy is null" : nullptr;
+  }
+  return culling::isOf(*scene.hierarchy, scene.object_bounds)
+             ? nullptr
+             : "CullingScene::hierarchy is not of CullingScene::object_bounds";
+}
+
+bool hidesNothing(const CullingScene& scene) {
+  return scene.occluders->occluders.empty() && (scene.surfaces == nullptr || scene.surfaces->parts.empty());
 }
 
 }  // namespace
@@ -47,12 +56,12 @@ struct Culler::Impl {
         settings(s),
         method(&m),
         traits(m.traits()),
-        fitted(fitsTogether(given, traits)),
+        misfit(misfitOf(given, traits)),
         sizes(SceneSizes::of(*scene.hierarchy, *scene.occluders)),
         views_to_come(s.views_at_once) {
     // A hierarchy that does not fit is never read.
     CullingScene checked = scene;
-    if (!fitted) {
+    if (misfit != nullptr) {
       checked.hierarchy = nullptr;
       checked = withoutNulls(checked);
     }
@@ -69,8 +78,19 @@ struct Culler::Impl {
     if (scene.object_boxes != nullptr && settings.test_objects) {
       several_boxes.emplace(*scene.object_boxes, scene.object_bounds);
     }
+    note = noteOn(scene);
     takeStatistics();
     clearStatistics();
+  }
+
+  const char* noteOn(const CullingScene& of) const {
+    if (filter && of.sets != nullptr && !filter->usesSets()) {
+      return "CullingScene::sets are of other boxes than CullingScene::object_bounds, and are not used";
+    }
+    if (traits.occluders && hidesNothing(of)) {
+      return "CullingScene::surfaces and CullingScene::occluders are empty: nothing hides but what moves";
+    }
+    return nullptr;
   }
 
   void takeStatistics() {
@@ -83,11 +103,19 @@ struct Culler::Impl {
     }
   }
 
-  // Whether the scene is the one given to the constructor, as far as constant time allows to tell.
-  bool fits() const { return fitted && sizes == SceneSizes::of(*scene.hierarchy, *scene.occluders); }
+  // Why the scene is not to be looked into, also if it is not the one given to the constructor, as far as
+  // constant time allows to tell.
+  const char* sceneFault() const {
+    if (misfit != nullptr) {
+      return misfit;
+    }
+    return sizes == SceneSizes::of(*scene.hierarchy, *scene.occluders)
+               ? nullptr
+               : "the hierarchy or the occluders changed without Culler::reset()";
+  }
 
   // True if the scene does not fit together or the view is invalid, so that nothing may be culled.
-  bool keepsEverything() const { return stats.unfit || stats.view_fault != nullptr; }
+  bool keepsEverything() const { return stats.scene_fault != nullptr || stats.view_fault != nullptr; }
   void keepEverything() {
     answer.clear();
     culling::appendAll(*scene.hierarchy, scene.object_bounds.size(), answer);
@@ -228,7 +256,8 @@ struct Culler::Impl {
   std::unique_ptr<CullingMethod> owned;
   CullingMethod* method;  // owned, or about to be
   MethodTraits traits;
-  bool fitted;                                    // the parts of the scene belong together
+  const char* misfit;                             // why its parts do not belong together; null: they do
+  const char* note = nullptr;                     // see CullStats::scene_note
   SceneSizes sizes;                               // at construction
   std::optional<SetFilter> filter;                // if sets are used
   std::optional<culling::OccluderChoice> choice;  // if the method uses occluders
@@ -267,7 +296,8 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
   impl_->stats.view_fault = fault;
-  impl_->stats.unfit = !impl_->fits();
+  impl_->stats.scene_fault = impl_->sceneFault();
+  impl_->stats.scene_note = impl_->note;
   if (impl_->keepsEverything()) {
     impl_->keepEverything();
     impl_->stats.traverse_us = impl_->classifyMoving(frustum, dynamic_boxes);
@@ -325,7 +355,7 @@ void Culler::reset() {
 
 void Culler::reset(const CullingScene& scene) {
   // Should the new one throw for want of memory, the method is of neither scene, and this keeps everything.
-  impl_->fitted = false;
+  impl_->misfit = "Culler::reset() did not succeed";
   auto anew = std::make_unique<Impl>(scene, *impl_->method, impl_->settings);
   anew->owned = std::move(impl_->owned);
   anew->parallel_for = std::move(impl_->parallel_for);

@@ -23,6 +23,8 @@ class SetFilter {
   // The hierarchy must have been built from these boxes. sets: may be null; sets of other boxes are not used.
   SetFilter(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets, Marks marks);
 
+  // False if there are no sets, or sets of other boxes.
+  bool usesSets() const { return sets_ != nullptr; }
   // Finds the set of the view. Returns true if it differs from that of the last call.
   bool find(const View& view);
 

@@ -5,10 +5,13 @@
 #include "src/scene/weld.h"
 
 namespace sightline {
+
 Box sceneBounds(const SceneView& scene) {
   Box bounds;
   for (const Object& object : scene.objects) {
-    bounds.extend(object.bounds);
+    if (object.bounds.wellFormed()) {
+      bounds.extend(object.bounds);
+    }
   }
   return bounds;
 }
@@ -26,13 +29,22 @@ void weldPositions(Scene& scene) {
   scene.positions.assign(kept.begin(), kept.end());
 }
 
-void updateBounds(Scene& scene) {
-  for (Object& object : scene.objects) {
+void updateBounds(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
+                  std::span<Object> objects) {
+  for (Object& object : objects) {
     object.bounds = Box{};
-    for (std::uint32_t i = 0; i < object.index_count; ++i) {
-      object.bounds.extend(scene.positions[scene.indices[object.first_index + i]]);
+    for (const std::uint32_t index : indices.subspan(object.first_index, object.index_count)) {
+      if (!isFinite(positions[index])) {
+        object.bounds = Box{};
+        break;
+      }
+      object.bounds.extend(positions[index]);
     }
   }
+}
+
+void updateBounds(Scene& scene) {
+  updateBounds(scene.positions, scene.indices, scene.objects);
 }
 
 }  // namespace sightline

@@ -54,6 +54,21 @@ TEST(VectorOver, ACopyHasItemsOfItsOwn) {
   EXPECT_EQ(*given.items, (std::array<std::uint32_t, 4>{1, 2, 3, 4}));
 }
 
+TEST(VectorOver, LetsItsItemsGoWhenAnotherOneIsAssigned) {
+  const Given given;
+  LargeVector<std::uint32_t> vector = given.vector();
+  const LargeVector<std::uint32_t> other{5, 6};
+  vector = other;
+  EXPECT_EQ(vector, other);
+  LargeVector<std::uint32_t> again = given.vector();
+  LargeVector<std::uint32_t> between;
+  between = again;
+  between[0] = 9;
+  again = between;
+  EXPECT_EQ(again, (LargeVector<std::uint32_t>{9, 2, 3, 4}));
+  EXPECT_EQ(*given.items, (std::array<std::uint32_t, 4>{1, 2, 3, 4}));
+}
+
 TEST(VectorOver, GrowsIntoMemoryOfItsOwn) {
   const Given given;
   LargeVector<std::uint32_t> vector = given.vector();

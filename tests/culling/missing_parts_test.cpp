@@ -30,7 +30,7 @@ TEST(MissingParts, WithoutAHierarchyMethodsThatNeedOneKeepEverything) {
     Culler culler({.object_bounds = demo.bounds, .occluders = &demo.occluders}, makeMethod(method.settings));
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 2)) {
       EXPECT_EQ(visibleOf(culler, view), allOf(demo)) << method.name;
-      EXPECT_TRUE(culler.stats().unfit) << method.name;
+      EXPECT_NE(culler.stats().scene_fault, nullptr) << method.name;
     }
   }
 }
@@ -42,7 +42,9 @@ TEST(MissingParts, WithoutOccludersEveryMethodIsViewFrustumCulling) {
     Culler culler(scene, makeMethod(method.settings)), frustum(scene, frustumCulling());
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 4)) {
       EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << method.name;
-      EXPECT_FALSE(culler.stats().unfit) << method.name;
+      EXPECT_NE(culler.stats().scene_note, nullptr) << method.name;
+      EXPECT_EQ(frustum.stats().scene_note, nullptr);
+      EXPECT_EQ(culler.stats().scene_fault, nullptr) << method.name;
     }
   }
 }
@@ -61,7 +63,7 @@ TEST(MissingParts, SetsAloneGiveWhatTheyGiveWithAHierarchy) {
     Culler whole({.hierarchy = &demo.bvh, .object_bounds = demo.bounds, .sets = used}, visibilityOctree());
     for (const View& view : demo.frames(demo.scene.paths[0], 40, 6)) {
       EXPECT_EQ(visibleOf(alone, view), visibleOf(whole, view));
-      EXPECT_FALSE(alone.stats().unfit);
+      EXPECT_EQ(alone.stats().scene_fault, nullptr);
       EXPECT_GT(alone.visible().size(), 0u);
       EXPECT_LT(alone.visible().size(), demo.bounds.size());
     }

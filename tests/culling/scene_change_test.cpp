@@ -110,7 +110,7 @@ void expectAsNew(AnyCuller& culler, const LiveScene& live, HierarchyKind kind, c
   for (const View& view : live.demo.frames(live.demo.scene.paths[0], 60, 4)) {
     const Objects visible = visibleOf(culler, view);
     EXPECT_EQ(visible, visibleOf(fresh, view)) << where;
-    EXPECT_FALSE(culler.stats().unfit) << where;
+    EXPECT_EQ(culler.stats().scene_fault, nullptr) << where;
     EXPECT_LT(visible.size(), live.demo.bounds.size()) << where;
     expectTheSeenIsKept(exact, culler, view, where);
   }
@@ -170,7 +170,7 @@ TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
       ASSERT_GT(live.demo.bounds.size(), count);
       for (const View& view : views) {
         EXPECT_EQ(visibleOf(culler, view), firstObjects(live.demo.bounds.size())) << name;
-        EXPECT_TRUE(culler.stats().unfit);
+        EXPECT_NE(culler.stats().scene_fault, nullptr);
         EXPECT_TRUE(culler.occludersUsed().empty());
         EXPECT_TRUE(culler.depthBuffer().reciprocal_depth.empty());
       }
@@ -256,12 +256,12 @@ TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
         AnyCuller culler(hierarchy, bounds, occluders, settings);
         visibleOf(culler, street.view);
         const Objects kept = visibleOf(culler, street.view);
-        EXPECT_TRUE(culler.stats().unfit) << name;
+        EXPECT_NE(culler.stats().scene_fault, nullptr) << name;
         return kept;
       };
       AnyCuller culler(fitting, street.bounds, occluders, settings);
       EXPECT_LT(visibleOf(culler, street.view).size(), 3u) << name;
-      EXPECT_FALSE(culler.stats().unfit) << name;
+      EXPECT_EQ(culler.stats().scene_fault, nullptr) << name;
       EXPECT_EQ(keptBy(fitting, more), firstObjects(4)) << name;
       EXPECT_EQ(keptBy(fitting, std::span(street.bounds).first(1)), firstObjects(3)) << name;
       EXPECT_EQ(keptBy(fitting, moved), firstObjects(3)) << name;
@@ -298,7 +298,7 @@ TEST(Culler, ADatabaseOfOtherOccludersHidesNothingWrongly) {
     AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, databasesOf(smallCity()));
     for (const View& view : demo.frames(demo.scene.paths[0], 60, 4)) {
       culler.cull(view);
-      EXPECT_FALSE(culler.stats().unfit);
+      EXPECT_EQ(culler.stats().scene_fault, nullptr);
       expectTheSeenIsKept(exact, culler, view, method.name);
     }
   }
@@ -344,7 +344,7 @@ TEST(ResetCuller, HidesNothingThatARayReachesWhenAllMovedInPlace) {
       for (int step = 0; step < 12; ++step) {
         for (int frame = 0; frame < 2; ++frame) {
           const Objects visible = visibleOf(culler, test::kLookingBack);
-          EXPECT_FALSE(culler.stats().unfit);
+          EXPECT_EQ(culler.stats().scene_fault, nullptr);
           for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
             if (std::binary_search(visible.begin(), visible.end(), ObjectId(i))) {
               continue;

@@ -170,6 +170,8 @@ TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
       const View view = smallCity().frames(smallCity().scene.paths[0], 10, 1)[0];
       EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << name;
       EXPECT_EQ(culler.stats().set_nodes, 0u) << name;
+      ASSERT_NE(culler.stats().scene_note, nullptr) << name;
+      EXPECT_NE(std::string(culler.stats().scene_note).find("other boxes"), std::string::npos) << name;
     }
   }
 }

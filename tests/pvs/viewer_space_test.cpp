@@ -164,6 +164,19 @@ TEST(FreeSpace, BeginsBesideAPointThatIsTooCloseToAWall) {
   EXPECT_TRUE(within(space->boxes, at_wall[0]));
 }
 
+// A wall through the voxel of the start has free ones on both sides, which is all that is known of them.
+TEST(FreeSpace, BeginsOnBothSidesOfAWallThatAPointIsCloseTo) {
+  for (const bool mirrored : {false, true}) {
+    std::vector<test::Solid> solids = room({0, 0, -5}, {10, 3, 5});
+    const float wall = mirrored ? -0.06f : 0.01f;
+    solids.push_back(block({-0.1f, -0.1f, wall}, {10.1f, 3.1f, wall + 0.05f}));
+    const Vec3d beside[] = {{5, 1.5, mirrored ? -0.08 : 0.08}};
+    const Result<FreeSpace> space = found(sceneOf(solids), {.region = {{0, 0, -5}, {10, 3, 5}}}, beside);
+    ASSERT_TRUE(space) << space.error().message;
+    EXPECT_TRUE(within(space->boxes, {5, 1.5, mirrored ? -4.0 : 4.0})) << "the viewer's room";
+  }
+}
+
 TEST(FreeSpace, SaysWhatIsWrong) {
   const Scene scene = sceneOf({block({0, 0, 0}, {1, 1, 1})});
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -101,6 +101,26 @@ TEST(UpdateBounds, AreThoseOfTheUsedVerticesOnly) {
   EXPECT_EQ(sceneBounds(scene.view()), (Box{{-1, 0, 0}, {7, 8, 9}}));
 }
 
+TEST(UpdateBounds, AreEmptyWhereAVertexIsNotFinite) {
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {odd, 5, 0}};
+    scene.indices = {0, 1, 2};
+    scene.objects = {objectOf(0, 3)};
+    updateBounds(scene);
+    EXPECT_TRUE(scene.objects[0].bounds.empty()) << "it is never culled";
+  }
+}
+
+TEST(SceneBounds, AreThoseOfTheFiniteBoxes) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  Scene scene;
+  scene.objects.resize(3);
+  scene.objects[0].bounds = {{-kInfinite, 0, 0}, {kInfinite, 1, 1}};
+  scene.objects[1].bounds = {{1, 2, 3}, {4, 5, 6}};
+  EXPECT_EQ(sceneBounds(scene.view()), (Box{{1, 2, 3}, {4, 5, 6}}));
+}
+
 TEST(SceneBounds, AreEmptyWithoutTriangles) {
   EXPECT_TRUE(sceneBounds(Scene{}.view()).empty());
 }

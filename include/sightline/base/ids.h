@@ -3,7 +3,11 @@
 // 32-bit indices, one type each, so that an object's number is never taken for a node's.
 
 #include <compare>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 namespace sightline {
 
@@ -13,7 +17,13 @@ struct Id {
 
   constexpr Id() = default;
   constexpr explicit Id(std::uint32_t v) : value(v) {}
-  constexpr explicit Id(std::size_t v) : value(static_cast<std::uint32_t>(v)) {}
+  // Of a number that is negative or does not fit: the invalid one.
+  template <std::integral Number>
+  constexpr explicit Id(Number number) {
+    if (std::in_range<std::uint32_t>(number)) {
+      value = static_cast<std::uint32_t>(number);
+    }
+  }
   constexpr bool valid() const { return value != 0xffffffffu; }
   friend constexpr auto operator<=>(Id, Id) = default;
 };
@@ -24,3 +34,10 @@ using NodeIndex = Id<struct NodeTag>;       // node of a Hierarchy
 using OccluderId = Id<struct OccluderTag>;  // polygon of an OccluderSet
 
 }  // namespace sightline
+
+template <typename Tag>
+struct std::hash<sightline::Id<Tag>> {
+  std::size_t operator()(sightline::Id<Tag> id) const noexcept {
+    return std::hash<std::uint32_t>()(id.value);
+  }
+};

@@ -20,7 +20,8 @@ void* allocateLarge(std::size_t bytes);
 void freeLarge(void* memory, std::size_t bytes);  // bytes: as allocated
 
 // Bytes that somebody else owns, such as those of a mapped file. Nobody else may change them while they are
-// used. A vector over them (vectorOver) that is changed is changed there: map files copy-on-write.
+// used. A vector over them (vectorOver) whose items are changed is changed there: map files copy-on-write.
+// One that is assigned to lets them go.
 struct SharedBytes {
   std::span<const std::byte> bytes{};
   std::shared_ptr<const void> owner{};  // the bytes are there for as long as this is
@@ -45,11 +46,23 @@ class LargeAllocator {
   using value_type = T;
   using propagate_on_container_move_assignment = std::true_type;
   using propagate_on_container_swap = std::true_type;
+  using propagate_on_container_copy_assignment = std::true_type;
 
   LargeAllocator() = default;
   explicit LargeAllocator(std::shared_ptr<base::GivenItems> given) : given_(std::move(given)) {}
   template <typename U>
   LargeAllocator(const LargeAllocator<U>&) {}
+  LargeAllocator(const LargeAllocator&) = default;
+  LargeAllocator(LargeAllocator&&) noexcept = default;
+  LargeAllocator& operator=(LargeAllocator&&) noexcept = default;
+  ~LargeAllocator() = default;
+  // A vector over given items that another one is copied to lets them go, so that nothing is written there.
+  LargeAllocator& operator=(const LargeAllocator& other) {
+    if (this != &other) {
+      given_.reset();
+    }
+    return *this;
+  }
   // A copy of a vector has memory of its own.
   LargeAllocator select_on_container_copy_construction() const { return {}; }
   // NOLINTEND(readability-identifier-naming)

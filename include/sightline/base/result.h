@@ -24,17 +24,20 @@ class [[nodiscard]] Result {
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  // Precondition of the four accessors of the value: has_value(). Of error(): !has_value().
-  T& value() {
+  // Precondition of the accessors of the value: has_value(). Of error(): !has_value(). Of a temporary, as in
+  // *findSomething(), the value is moved.
+  T& value() & {
     assert(has_value());
     return *std::get_if<0>(&state_);
   }
-  const T& value() const {
+  const T& value() const& {
     assert(has_value());
     return *std::get_if<0>(&state_);
   }
-  T& operator*() { return value(); }
-  const T& operator*() const { return value(); }
+  T&& value() && { return std::move(value()); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(value()); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
   const Error& error() const {

@@ -69,9 +69,11 @@ struct CullStats {
   // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything was
   // kept.
   const char* view_fault = nullptr;
-  // The scene does not fit together, or has changed without reset(): every object was kept, also outside the
-  // frustum, and no other count is made.
-  bool unfit = false;
+  // What is wrong with the scene, whose parts do not fit together or which changed without reset(); null
+  // where nothing is. Otherwise every object was kept, also outside the frustum, and no other count is made.
+  const char* scene_fault = nullptr;
+  // Null, or what of the scene the culler goes without: what it was not given, or sets of other boxes.
+  const char* scene_note = nullptr;
   // The answer was found in an earlier frame (CullerSettings::views_at_once): no other count is made.
   bool held = false;
   std::uint32_t nodes_visited = 0;     // nodes that were compared with the frustum

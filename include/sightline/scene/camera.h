@@ -71,7 +71,7 @@ struct CameraPath {
   double ortho_height = 0.0;                 // metres; > 0 makes the camera orthographic
   std::uint32_t width = 1280, height = 720;  // pixels
   double shift_x = 0.0, shift_y = 0.0;       // of each view, see View
-  double z_near = 0.1, z_far = 2000.0;       // metres
+  double z_near = 0.1, z_far = 2000.0;       // metres, finite
   std::vector<CameraFrame> frames{};
 
   // The view of one frame, in the scene space of a scene with this origin; with {}, in world space, as a

@@ -74,14 +74,17 @@ struct Scene {
   std::uint64_t triangleCount() const { return indices.size() / 3; }
 };
 
-// Bounds of all objects, in scene space; empty for a scene without triangles.
+// The box around all objects that have a finite one, in scene space; empty if none has.
 Box sceneBounds(const SceneView& scene);
 
 // Stores positions that are bitwise equal (with -0 as 0) once and renumbers the indices. Removes unused
 // positions.
 void weldPositions(Scene& scene);
 
-// Recomputes Object::bounds from the triangles.
+// Sets Object::bounds from the triangles, whose numbers are in range (see SceneView). An object with a vertex
+// that is not finite gets an empty box: it is never culled.
+void updateBounds(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
+                  std::span<Object> objects);
 void updateBounds(Scene& scene);
 
 }  // namespace sightline

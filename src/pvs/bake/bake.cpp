@@ -52,17 +52,6 @@ bool staysOnePart(const BakeScene& scene, const OctreeCell& cell, const CellOutc
   return cellsBelow(scene, cell, affordable) <= affordable;
 }
 
-// The box around all objects that have a finite one; empty if none has.
-Box boundsOf(const SceneView& scene) {
-  Box bounds;
-  for (const Object& object : scene.objects) {
-    if (object.bounds.wellFormed()) {
-      bounds.extend(object.bounds);
-    }
-  }
-  return bounds;
-}
-
 // An eighth of the scene's diagonal spans a few rooms or a few streets. Many objects are searched by lines of
 // sight, for which occluders that are far away take no time until something is behind them. But it depends on
 // the number of objects alone, so that the sets are the same where samples are kept.
@@ -106,7 +95,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   }
   BakeSettings complete = settings;
   if (complete.viewers.empty()) {
-    complete.viewers = {boundsOf(scene)};
+    complete.viewers = {sceneBounds(scene)};
     complete.whole_cells = true;
     if (complete.viewers[0].empty()) {
       return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};

@@ -52,11 +52,9 @@ CellBox cubeAround(const CellBox& box) {
 // Diagonal of the smallest box around this one and all objects that have a box.
 double diagonalOf(const SceneView& scene, const CellBox& box) {
   Vec3d low = box.min, high = box.max;
-  for (const Object& object : scene.objects) {
-    if (object.bounds.wellFormed()) {
-      low = min(low, Vec3d(object.bounds.min));
-      high = max(high, Vec3d(object.bounds.max));
-    }
+  if (const Box all = sceneBounds(scene); !all.empty()) {
+    low = min(low, Vec3d(all.min));
+    high = max(high, Vec3d(all.max));
   }
   return length(high - low);
 }

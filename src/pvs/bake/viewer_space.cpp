@@ -312,7 +312,8 @@ void flood(const Place& start, VoxelBits& open, VoxelBits& reached) {
   }
 }
 
-// Calls visit(place) for the voxels at most this many away on each axis, the closest first.
+// Calls visit(place, ring) for the voxels at most this many away on each axis, the closest first; ring is how
+// many the voxel is away on the axis where it is farthest.
 template <typename Visit>
 void forEachNear(const Place& centre, int distance, Visit&& visit) {
   for (int ring = 0; ring <= distance; ++ring) {
@@ -320,7 +321,7 @@ void forEachNear(const Place& centre, int distance, Visit&& visit) {
       for (int y = -ring; y <= ring; ++y) {
         for (int x = -ring; x <= ring; ++x) {
           if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == ring) {
-            visit(Place{centre[0] + x, centre[1] + y, centre[2] + z});
+            visit(Place{centre[0] + x, centre[1] + y, centre[2] + z}, ring);
           }
         }
       }
@@ -507,12 +508,14 @@ Result<FreeSpace> findFreeSpace(const SceneView& scene, std::span<const Vec3d> f
   bool any = false;
   for (const Vec3d& start : from) {
     const Place place = isFinite(start) ? grid.placeOf(start) : Place{-1, -1, -1};
-    bool found = false;
-    forEachNear(place, blocked.holds(place) ? kStartReach : -1, [&](const Place& near) {
-      // The closest free voxels only: others may be on the other side of a wall.
-      if (!found && blocked.holds(near) && !blocked.at(near)) {
+    int first_ring = kStartReach;  // the first one with a free voxel
+    forEachNear(place, blocked.holds(place) ? kStartReach : -1, [&](const Place& near, int ring) {
+      // All of the closest free voxels, since a wall through the start's own one may have some on either
+      // side.
+      if (ring <= first_ring && blocked.holds(near) && !blocked.at(near)) {
         flood(near, open, reached);
-        found = any = true;
+        first_ring = ring;
+        any = true;
       }
     });
   }
