@@ -27,6 +27,7 @@ if(NOT output STREQUAL "visible: 0\nvisible: 5\n")
 endif()
 
 run(${WORK}/consumer/partial_settings)
+run(${WORK}/consumer/fast_math)
 
 run(${WORK}/consumer/sort_layers)
 if(NOT output STREQUAL "1 \n0 \n2 3 \n" AND NOT output STREQUAL "1 \n2 3 \n0 \n" AND NOT output STREQUAL "2 3 \n1 \n0 \n")

@@ -14,6 +14,7 @@
 //                above what kOnPlane and kEdgeMargin can move along a ray that hits the plane at a grazing
 //                angle
 
+#include "sightline/base/inline.h"
 #include "sightline/math/vec3.h"
 
 namespace sightline {
@@ -29,7 +30,7 @@ inline constexpr double kGrazingSine = 0x1p-10;
 inline constexpr double kShortestEdgeSine = 0x1p-20;
 
 // A size for scaling the tolerances: at least the Euclidean length, at most 1.8 times it.
-constexpr double l1Norm(const Vec3d& p) {
+SIGHTLINE_INLINE constexpr double l1Norm(const Vec3d& p) {
   const Vec3d a = abs(p);
   return a.x + a.y + a.z;
 }

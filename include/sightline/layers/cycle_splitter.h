@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "sightline/base/inline.h"
 #include "sightline/layers/layer_sorter.h"
 #include "sightline/math/plane.h"
 
@@ -23,7 +24,9 @@ struct PieceSide {
   Plane plane{};  // unit normal
   bool in_front = true;
 
-  bool contains(const Vec3d& point) const { return (plane.evaluate(point) >= 0.0) == in_front; }
+  SIGHTLINE_INLINE bool contains(const Vec3d& point) const {
+    return (plane.evaluate(point) >= 0.0) == in_front;
+  }
   friend bool operator==(const PieceSide&, const PieceSide&) = default;
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "sightline/base/inline.h"
 #include "sightline/math/vec3.h"
 
 namespace sightline {
@@ -19,7 +20,7 @@ struct Mat4 {
   }
 };
 
-constexpr Mat4 operator*(const Mat4& a, const Mat4& b) {
+SIGHTLINE_INLINE constexpr Mat4 operator*(const Mat4& a, const Mat4& b) {
   Mat4 r;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
@@ -54,18 +55,18 @@ constexpr Mat4 mat4FromColumns(std::span<const float, 16> columns) {
 }
 
 // m: affine (last row 0 0 0 1).
-constexpr Vec3d transformPoint(const Mat4& m, const Vec3d& p) {
+SIGHTLINE_INLINE constexpr Vec3d transformPoint(const Mat4& m, const Vec3d& p) {
   return {m(0, 0) * p.x + m(0, 1) * p.y + m(0, 2) * p.z + m(0, 3),
           m(1, 0) * p.x + m(1, 1) * p.y + m(1, 2) * p.z + m(1, 3),
           m(2, 0) * p.x + m(2, 1) * p.y + m(2, 2) * p.z + m(2, 3)};
 }
-constexpr Vec3d transformDirection(const Mat4& m, const Vec3d& d) {
+SIGHTLINE_INLINE constexpr Vec3d transformDirection(const Mat4& m, const Vec3d& d) {
   return {m(0, 0) * d.x + m(0, 1) * d.y + m(0, 2) * d.z, m(1, 0) * d.x + m(1, 1) * d.y + m(1, 2) * d.z,
           m(2, 0) * d.x + m(2, 1) * d.y + m(2, 2) * d.z};
 }
 // Determinant of the upper left 3 x 3 matrix; if negative, the matrix mirrors and reverses the winding of
 // triangles.
-constexpr double determinant3(const Mat4& m) {
+SIGHTLINE_INLINE constexpr double determinant3(const Mat4& m) {
   return dot(Vec3d(m(0, 0), m(1, 0), m(2, 0)),
              cross(Vec3d(m(0, 1), m(1, 1), m(2, 1)), Vec3d(m(0, 2), m(1, 2), m(2, 2))));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "sightline/base/inline.h"
 #include "sightline/math/vec3.h"
 
 namespace sightline {
@@ -11,9 +12,9 @@ struct Plane {
   double offset = 0.0;
 
   // Signed distance times the normal's length; positive on the side to which the normal points.
-  constexpr double evaluate(const Vec3d& point) const { return dot(normal, point) + offset; }
+  SIGHTLINE_INLINE constexpr double evaluate(const Vec3d& point) const { return dot(normal, point) + offset; }
   constexpr Plane flipped() const { return {-normal, -offset}; }
-  friend constexpr bool operator==(const Plane&, const Plane&) = default;
+  SIGHTLINE_INLINE friend constexpr bool operator==(const Plane&, const Plane&) = default;
 };
 
 }  // namespace sightline

@@ -4,11 +4,13 @@
 // Source: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "sightline/base/inline.h"
 #include "sightline/math/vec3.h"
 
 namespace sightline {
@@ -44,7 +46,7 @@ struct CellPlane {
 enum class CellSide : std::uint8_t { kFront, kBetween, kBack };
 
 // The side of the plane that the eye is on; `between` if the dot product is not a number.
-inline CellSide sideOf(const CellPlane& plane, const Vec3d& eye) {
+SIGHTLINE_INLINE CellSide sideOf(const CellPlane& plane, const Vec3d& eye) {
   const double distance = dot(plane.normal, eye);
   return distance >= plane.front  ? CellSide::kFront
          : distance <= plane.back ? CellSide::kBack
@@ -126,33 +128,32 @@ struct OctreeCell {
 
 // The coordinate at which grid line `at` of a level crosses an axis. The same place has the same bits on
 // every level, because the baker and the look-up both use this function.
-inline double gridLine(double min, double max, std::uint32_t level, std::uint32_t at) {
+SIGHTLINE_INLINE double gridLine(double min, double max, std::uint32_t level, std::uint32_t at) {
   return min + (max - min) * (static_cast<double>(at) / static_cast<double>(1u << level));
 }
-inline Vec3d cellMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
+SIGHTLINE_INLINE Vec3d cellMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
   return {gridLine(min.x, max.x, c.level, c.at[0]), gridLine(min.y, max.y, c.level, c.at[1]),
           gridLine(min.z, max.z, c.level, c.at[2])};
 }
-inline Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
+SIGHTLINE_INLINE Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
   return {gridLine(min.x, max.x, c.level, c.at[0] + 1), gridLine(min.y, max.y, c.level, c.at[1] + 1),
           gridLine(min.z, max.z, c.level, c.at[2] + 1)};
 }
 
 // The box in a cell, of the octree with this box, where viewers are expected.
-inline Vec3d viewersMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c, const ViewerBounds& v) {
-  const auto line = [&](int axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    return gridLine(min[axis], max[axis], c.level + kViewerLevels, (c.at[a] << kViewerLevels) + v.first[a]);
-  };
-  return {line(0), line(1), line(2)};
+SIGHTLINE_INLINE double viewersLine(double min, double max, const OctreeCell& c, std::size_t axis,
+                                    std::uint32_t step) {
+  return gridLine(min, max, c.level + kViewerLevels, (c.at[axis] << kViewerLevels) + step);
 }
-inline Vec3d viewersMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c, const ViewerBounds& v) {
-  const auto line = [&](int axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    return gridLine(min[axis], max[axis], c.level + kViewerLevels,
-                    (c.at[a] << kViewerLevels) + v.last[a] + 1u);
-  };
-  return {line(0), line(1), line(2)};
+SIGHTLINE_INLINE Vec3d viewersMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c,
+                                  const ViewerBounds& v) {
+  return {viewersLine(min.x, max.x, c, 0, v.first[0]), viewersLine(min.y, max.y, c, 1, v.first[1]),
+          viewersLine(min.z, max.z, c, 2, v.first[2])};
+}
+SIGHTLINE_INLINE Vec3d viewersMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c,
+                                  const ViewerBounds& v) {
+  return {viewersLine(min.x, max.x, c, 0, v.last[0] + 1u), viewersLine(min.y, max.y, c, 1, v.last[1] + 1u),
+          viewersLine(min.z, max.z, c, 2, v.last[2] + 1u)};
 }
 
 // Calls visit(leaf index, cell) for all leaves, depth first, children in order.
