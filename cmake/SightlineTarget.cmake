@@ -44,10 +44,11 @@ function(sightline_options target)
   cmake_parse_arguments(PARSE_ARGV 1 own "UNCHECKED" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  # The same bits everywhere: no contraction to fused multiply-add, no fast-math.
+  # The same bits everywhere: no contraction to fused multiply-add, no fast-math. It is said also where nobody asks for
+  # it, because a program that has Sightline as a subdirectory may have -ffast-math or -Ofast in CMAKE_CXX_FLAGS.
   # Designated initialisers leave out the members that keep their defaults.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
-    -Wno-missing-field-initializers -ffp-contract=off)
+    -Wno-missing-field-initializers -fno-fast-math -ffp-contract=off)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # GCC 12 sees overlaps in std::string's own operator+ (its bug 105651).
     target_compile_options(${target} PRIVATE -Wno-restrict)
