@@ -4,6 +4,7 @@
 // Member names follow std::expected, which it stands in for until every compiler has it.
 
 #include <cassert>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -50,7 +51,32 @@ class [[nodiscard]] Result {
 };
 
 // The result of an operation that yields nothing but success.
-struct Success {};
-using Status = Result<Success>;
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}
+
+  bool has_value() const { return !error_.has_value(); }
+  explicit operator bool() const { return has_value(); }
+
+  // Precondition: !has_value().
+  const Error& error() const {
+    assert(!has_value());
+    return *error_;
+  }
+
+ private:
+  std::optional<Error> error_;
+};
+
+// X11/Xlib.h defines both names as macros. So public headers do without them, and a program that has included
+// it has none of them.
+#if !defined(Status) && !defined(Success)
+using Status = Result<void>;
+struct Success {
+  operator Status() const { return {}; }
+};
+#endif
 
 }  // namespace sightline

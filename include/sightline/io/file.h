@@ -13,8 +13,8 @@ Result<std::string> readFile(const std::string& file);
 
 // Writes a file under a temporary name beside the target and renames it, so that half a file never has the
 // final name.
-Status writeFile(const std::string& file, std::string_view bytes);
+Result<void> writeFile(const std::string& file, std::string_view bytes);
 // The same of bytes that lie in several places, one after the other.
-Status writeFile(const std::string& file, std::span<const std::string_view> pieces);
+Result<void> writeFile(const std::string& file, std::span<const std::string_view> pieces);
 
 }  // namespace sightline

@@ -17,7 +17,7 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-Status writePng(const Image& image, const std::string& file);
+Result<void> writePng(const Image& image, const std::string& file);
 // Reads any PNG as eight bits a channel; one without an alpha channel is opaque. Errors: no such file, no
 // PNG, more than 16384 pixels a side.
 Result<Image> readPng(const std::string& file);

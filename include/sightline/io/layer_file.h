@@ -32,7 +32,7 @@ FileLayer croppedLayer(std::string name, std::uint32_t width, std::uint32_t heig
 // (JSON, say) for the attribute "sightline" of the first part.
 // Errors: no layers; a size of 0 or above 2^15; a layer outside the picture or with the wrong number of
 // values; a name twice; the file cannot be written; the library was built without OpenEXR.
-Status writeLayerFile(const std::string& file, std::uint32_t width, std::uint32_t height,
-                      std::span<const FileLayer> layers, const std::string& description);
+Result<void> writeLayerFile(const std::string& file, std::uint32_t width, std::uint32_t height,
+                            std::span<const FileLayer> layers, const std::string& description);
 
 }  // namespace sightline

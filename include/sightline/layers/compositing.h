@@ -149,14 +149,14 @@ class CompositingCompiler {
 // Checks layers that do not come from LayerMerger; compile() requires it. Lists of firsts must begin at 0,
 // ascend and end with the number of elements; occlusions must be between two layers of one group, ascending,
 // and never both ways. Errors: the first violation.
-Status checkLayers(const FrameLayers& layers);
+Result<void> checkLayers(const FrameLayers& layers);
 
 CompositingCounts countSteps(std::span<const CompositingStep> steps);
 
 // Checks a program that was not just compiled. Its layers must be below `layers`, kLoad, kIn and kOut must
 // have a layer, and every register must be started before it is used. Errors: the first step that violates
 // this.
-Status checkProgram(std::span<const CompositingStep> steps, std::size_t layers);
+Result<void> checkProgram(std::span<const CompositingStep> steps, std::size_t layers);
 
 // Returns a step as text: "load 3", "in 1", "out 3", "start sum", "add", "start image", "over 2". A number is
 // a layer's; without a number the operand is the register.

@@ -45,8 +45,8 @@ inline constexpr std::size_t kCompositingScratch = 512;
 // Errors: those of checkProgram(), fewer images than layers, an image of another size than target, a stride
 // below the width, or too little scratch. target is then unchanged.
 // Thread safety: several threads may call this with different targets (bands of rows, say) and scratch.
-Status evaluate(const CompositingProgram& program, std::span<const ShapedImage> images, ShapedTarget target,
-                std::span<ShapedPixel> scratch);
+Result<void> evaluate(const CompositingProgram& program, std::span<const ShapedImage> images,
+                      ShapedTarget target, std::span<ShapedPixel> scratch);
 
 // Composites one pixel, with the same bits as evaluate(). layers: one pixel per layer. Precondition: the
 // program passes checkProgram().

@@ -11,6 +11,6 @@ namespace sightline {
 // objects are never culled, and importers refuse them. The error names the first object that breaks a rule,
 // the rule, and the numbers that break it. Reads every index once; call it once a scene, at least while a
 // program is developed: the other functions that take a SceneView do not check these rules.
-Status checkScene(const SceneView& scene);
+Result<void> checkScene(const SceneView& scene);
 
 }  // namespace sightline

@@ -73,7 +73,7 @@ WorldMesh boxMesh(const Box& box);
 // outside of the drawn mesh, or on it. Exact. Error, with the reason: the drawn mesh is not closed, the
 // occluder touches it, or part of it lies outside. Takes time as the product of their triangles, for pairs
 // whose boxes overlap; so call it when assets are built.
-Status checkInside(const MeshView& occluder, const MeshView& drawn);
+Result<void> checkInside(const MeshView& occluder, const MeshView& drawn);
 
 // Reads a mesh and finds its surfaces, once, on any thread. Equal positions are one vertex, whatever their
 // normals and texture coordinates are, so meshes need not be welded. Takes about two microseconds a triangle

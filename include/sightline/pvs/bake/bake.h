@@ -216,7 +216,8 @@ class Bake {
   // Assembles and writes the file, with the bytes that sightline::writeSight() gives it, but has no more than
   // a part and the octree without its sets in memory; with a byte budget, all sets are. Each part is read
   // once. Payload that is not in its place yet is in a nameless file beside the target.
-  Status writeSight(const std::string& file, const ReadPart& read, const SightExtras& extras = {}) const;
+  Result<void> writeSight(const std::string& file, const ReadPart& read,
+                          const SightExtras& extras = {}) const;
   // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
   // as for assemble(), which must have succeeded with them.

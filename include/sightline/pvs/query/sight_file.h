@@ -39,16 +39,17 @@ class SightFile {
 
   // Success if the file was baked from this scene. boxes() then contains each object of the scene exactly
   // once.
-  Status matches(const SceneId& scene) const;
+  Result<void> matches(const SceneId& scene) const;
 
   // Decodes a set and appends its nodes. set < setCount(). Returns an error if the chunk is corrupt. SetQuery
   // is faster for many look-ups.
-  Status readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const;
+  Result<void> readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const;
   // Calls visit(set, nodes) for all sets in ascending order, decoding each chunk once, and gives back
   // the memory of a mapped file behind it. Stops at the first corrupt chunk.
-  Status forEachSet(const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const;
+  Result<void> forEachSet(
+      const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const;
   // Decodes all chunks, as a check.
-  Status verifyAll() const;
+  Result<void> verifyAll() const;
 
   // Names of the occluder databases in the file, and their saved bytes.
   std::vector<std::string> databaseNames() const;
