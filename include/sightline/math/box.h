@@ -52,10 +52,11 @@ SIGHTLINE_INLINE constexpr bool overlaps(const Box& a, const Box& b) {
 // most more; the same box for 0 or an empty one. What contains another box does so afterwards.
 SIGHTLINE_INLINE Box widened(const Box& box, double by) {
   Box wide = box;
+  const Vec3d low(box.min), high(box.max);
   for (int axis = 0; by > 0.0 && !box.empty() && axis < 3; ++axis) {
     constexpr float kFar = std::numeric_limits<float>::infinity();
-    wide.min[axis] = std::nextafterf(static_cast<float>(box.min[axis] - by), -kFar);
-    wide.max[axis] = std::nextafterf(static_cast<float>(box.max[axis] + by), kFar);
+    wide.min[axis] = std::nextafterf(static_cast<float>(low[axis] - by), -kFar);
+    wide.max[axis] = std::nextafterf(static_cast<float>(high[axis] + by), kFar);
   }
   return wide;
 }

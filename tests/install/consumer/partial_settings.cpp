@@ -1,4 +1,4 @@
-// Compiled with -Wall -Wextra -Werror, as a project of somebody else may be: settings are given as the
+// Compiled with all warnings as errors, as a project of somebody else may be: settings are given as the
 // examples give them, by the names of those members that differ from their defaults.
 
 #include "sightline/culling/culler.h"
