@@ -225,6 +225,37 @@ TEST(Culler, KeepsEverythingInViewWhereTheSetsAreOthersWithoutReset) {
   }
 }
 
+// Sets of which a part was replaced in place by an equal number of others.
+class ReplacedInPart final : public VisibleSets {
+ public:
+  explicit ReplacedInPart(std::span<const Box> bounds) : tree_(buildBoxTree(bounds, {})), other_(tree_) {}
+
+  bool other_nodes = false, other_objects = false;
+
+  BoxTreeView boxes() const override {
+    return {other_nodes ? other_.view().nodes : tree_.view().nodes,
+            other_objects ? other_.view().objects : tree_.view().objects};
+  }
+  VisibleSet find(const Vec3d&, double) override { return {1, {}}; }
+
+ private:
+  BoxTree tree_, other_;
+};
+
+TEST(Culler, KeepsEverythingInViewWhereAPartOfTheSetsIsAnotherWithoutReset) {
+  const DemoScene& demo = oneCopy();
+  const View view = demo.frames(demo.scene.paths[0], 60, 1)[0];
+  AnyCuller frustum = demo.culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
+  for (const bool nodes : {true, false}) {
+    ReplacedInPart sets(demo.bounds);
+    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, {.method = AnyMethod::kVisibilityOctree}, {},
+                     &sets);
+    EXPECT_TRUE(visibleOf(culler, view).empty());
+    (nodes ? sets.other_nodes : sets.other_objects) = true;
+    EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << nodes;
+  }
+}
+
 // Boxes in front of and behind a wall, which is object 0; the view is from the origin along -z.
 struct Street {
   std::vector<Box> bounds{

@@ -19,6 +19,7 @@
 #include "sightline/culling/while_it_pays.h"
 #include "src/scene/usable_view.h"
 #include "tests/culling/demo_frames.h"
+#include "tests/culling/edge_scene.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/culling/kept_objects.h"
 #include "tests/culling/seen_though_culled.h"
@@ -200,6 +201,65 @@ TEST(ViewsToCome, ViewsThatLeaveWhatWasPlannedAreNotContained) {
     }
   }
   EXPECT_GT(planned, 100u);
+}
+
+// A view from the eye of another one, that shows what a wide view does but for this slope at each border. Its
+// axes are not quite at right angles, as those of a caller in single precision.
+View narrowerBy(double slope, const View& wide, const View& from, double skew) {
+  View view = wide;
+  view.eye = from.eye;
+  view.z_near = 0.97 * from.z_near;
+  view.z_far = 0.97 * from.z_far;
+  view.right = normalized(wide.right + wide.forward * skew);
+  view.up = normalized(wide.up + wide.forward * skew);
+  const double height = wide.tan_half_fovy, width = height * wide.aspect;
+  view.tan_half_fovy = height - slope;
+  view.aspect = (width - slope) / (height - slope);
+  view.shift_x = wide.shift_x * width / (width - slope);
+  view.shift_y = wide.shift_y * height / (height - slope);
+  return view;
+}
+
+// The borders of such a view are where points have these places in its picture, which is not quite where its
+// axes point.
+TEST(ViewsToCome, TheWideViewShowsAllOfViewsWhoseAxesAreNotQuiteAtRightAngles) {
+  std::size_t contained = 0, outside = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    test::Random random(seed);
+    Motion motion = randomMotion(random);
+    ViewsToCome views(8);
+    views.see(motion.view);
+    views.see(motion.next());
+    if (!views.plan()) {
+      continue;
+    }
+    const View& wide = views.wide();
+    for (const double slope : {0.0, 1e-8, 1e-7, 4e-7, 1e-5, 1e-3, 4e-3}) {
+      const View view = narrowerBy(slope, wide, motion.view, random.below(2) == 0 ? 0.9e-6 : -0.9e-6);
+      const Vec3d across = cross(view.up, view.forward);
+      const double volume = dot(view.right, across);
+      const Vec3d x = across / volume, y = cross(view.forward, view.right) / volume,
+                  z = cross(view.right, view.up) / volume;
+      bool all_inside = true;
+      for (const double side_x : {-1.0, 1.0}) {
+        for (const double side_y : {-1.0, 1.0}) {
+          const Vec3d ray = z + x * ((view.shift_x + side_x) * view.tan_half_fovy * view.aspect) +
+                            y * ((view.shift_y + side_y) * view.tan_half_fovy);
+          // Far away, the way from one eye to the other is nothing.
+          const double right = dot(ray, wide.right), up = dot(ray, wide.up), depth = dot(ray, wide.forward);
+          const double height = wide.tan_half_fovy, width = height * wide.aspect;
+          all_inside = all_inside && std::abs(right / depth - wide.shift_x * width) <= width &&
+                       std::abs(up / depth - wide.shift_y * height) <= height;
+        }
+      }
+      const bool held = views.contain(view);
+      EXPECT_TRUE(!held || all_inside) << "seed " << seed << ", slope " << slope;
+      contained += held ? 1 : 0;
+      outside += all_inside ? 0 : 1;
+    }
+  }
+  EXPECT_GT(contained, 100u);
+  EXPECT_GT(outside, 100u);
 }
 
 // How many frames hold what was planned in one, if the camera goes on as it did.
@@ -417,6 +477,38 @@ TEST(ViewsAtOnce, WhatIsSeenIsKeptWithFinerBuffersToo) {
   settings.focus.worth = 1e9;
   Culler culler = seenCity().culler(6, settings);
   expectWhatIsSeenIsKept(seenCity(), culler, wander(seenCity(), 77, 120), "city, finer buffers");
+}
+
+// A box behind a wall, which ends less than a pixel beside it: a finer buffer alone hides the box, and only
+// from where the camera begins. It comes out from behind the wall in frames that hold an answer.
+TEST(ViewsAtOnce, AFinerBufferHidesOnlyWhatIsHiddenFromAllViewers) {
+  constexpr double kBoxEnd = 160.1, kWallEnd = 160.9;
+  const test::EdgeScene edge;
+  const test::OraclePolygon wall = edge.wallBetween(-100.0, kWallEnd);
+  const std::vector<Box> bounds{test::boundsOf(wall), edge.boxBetween(158.0, kBoxEnd, 90.2, 90.8)};
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});
+  const SurfaceSet surfaces = test::surfacesOf({&wall, 1});
+  const CullingScene scene{.hierarchy = &hierarchy, .object_bounds = bounds, .surfaces = &surfaces};
+  DepthPyramidMethodSettings settings = SeenScene::kAll;
+  settings.raster = {.width = test::EdgeScene::kWidth, .height = test::EdgeScene::kHeight};
+  settings.focus = {.windows = 2, .worth = 1e9};
+  Culler culler(scene, depthPyramid(settings), {.views_at_once = 8});
+  // From here on the camera sees past the wall, metres to the right.
+  const double box_x = edge.xAt(kBoxEnd, edge.kBoxDepth), wall_x = edge.xAt(kWallEnd, edge.kWallDepth);
+  const double seen_from =
+      (wall_x * edge.kBoxDepth - box_x * edge.kWallDepth) / (edge.kBoxDepth - edge.kWallDepth);
+  std::size_t hidden_at_first = 0, held_and_seen = 0;
+  for (int frame = 0; frame < 8; ++frame) {
+    View view = edge.view;
+    view.eye.x = 0.31 * seen_from * frame;
+    culler.cull(view);
+    const bool kept = isKept(culler, ObjectId(1u));
+    hidden_at_first += frame == 0 && !kept ? 1 : 0;
+    held_and_seen += culler.stats().held && view.eye.x > seen_from ? 1 : 0;
+    EXPECT_TRUE(kept || view.eye.x < seen_from) << frame;
+  }
+  EXPECT_EQ(hidden_at_first, 1u);
+  EXPECT_GT(held_and_seen, 2u);
 }
 
 // A camera at rest sees the same in all frames of an answer, and finds it again.

@@ -224,7 +224,8 @@ TEST(SweptLines, AreWithinTheirSweepsForAllViewers) {
 }
 
 // Beyond the ends of an edge its line is known the less the farther it goes, and may lie between a pixel's
-// centre and other points of it. Whole rows that the edge crosses are another matter.
+// centre and other points of it. Rows that the edge crosses from border to border, wherever its ends really
+// are, are another matter.
 TEST(SweptEdges, LinesThatMeetAPixelBeyondTheirEndsAreTooNearToItsCentre) {
   constexpr std::int32_t kSize = 24;
   constexpr double kEnd = kSize * kGridStep, kMargin = BoundaryEdge::kMargin;
@@ -266,6 +267,8 @@ TEST(SweptEdges, LinesThatMeetAPixelBeyondTheirEndsAreTooNearToItsCentre) {
     const auto sideOf = [&](double x, double y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); };
     for (std::int32_t row = edge.first_row; row <= std::min<std::int32_t>(edge.last_row, kSize - 1); ++row) {
       if (row >= edge.first_whole && row < edge.end_whole) {
+        EXPECT_GE(row * kGridStep, std::min(from.y, to.y) + kMargin) << "seed " << seed;
+        EXPECT_LE((row + 1) * kGridStep, std::max(from.y, to.y) - kMargin) << "seed " << seed;
         continue;
       }
       for (std::int32_t column = 0; column < kSize; ++column) {

@@ -312,6 +312,26 @@ TEST(WindingMap, HandsOnLargeSumsAndCoversNothingWhereTheyMightNotFit) {
   }
 }
 
+// Sheets over each other, most of which face away: however many they are, the windings that they leave are
+// known to be none that covers anything, or not known.
+TEST(WindingMap, CoversNothingWhereMoreSheetsFaceAwayThanDoNot) {
+  using Values = std::vector<std::int32_t>;
+  for (const Values& values :
+       {Values{7, -20, 3}, {12, -20}, {12, -13}, {8, -9, 1}, {30, -62, 31}, {1 << 20, -(1 << 20)}}) {
+    // The box beside them keeps them from being drawn in runs.
+    std::vector<Polygon> group{{box(80, 1, 90, 21)}};
+    for (const std::int32_t value : values) {
+      group.push_back({box(3.5, 1.5, 70.5, 20.5), value});
+    }
+    SmallMap map(100, 24);
+    drawGroup(map.map(), group, {.floor = 1.0f});
+    for (std::uint32_t x = 0; x < 80; ++x) {
+      EXPECT_FALSE(map.covered(x, 10)) << values[0] << ", " << values[1] << ", pixel " << x;
+    }
+    EXPECT_TRUE(map.covered(85, 10));
+  }
+}
+
 // The least value of a bound in the pixels of a block, and whether the part may be in one of them.
 struct BlockBound {
   bool touched = false;

@@ -289,6 +289,89 @@ TEST(WorldSets, WhatWasMovedByMoreThanRoundingAlongAnyAxisIsATombstone) {
   }
 }
 
+// Each of its borders counts, the upper ones as well as the lower ones.
+TEST(WorldSets, WhatIsShorterThanItWasBakedIsATombstoneAtWhicheverEnd) {
+  for (const auto& [corner, size] :
+       {std::pair(Vec3d(-3, -3, -11), Vec3d(2, 6, 1)), std::pair(Vec3d(1, -3, -11), Vec3d(2, 6, 1)),
+        std::pair(Vec3d(-3, -3, -11), Vec3d(6, 2, 1)), std::pair(Vec3d(-3, 1, -11), Vec3d(6, 2, 1))}) {
+    WallBeforeCrate scene({.world_from_mesh = boxAt(corner, size)});
+    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    EXPECT_EQ(scene.world.tombstones(id), 1u) << corner.x << " " << corner.y;
+    WorldCuller culler({.occlusion = false});
+    culler.useSets(id, &scene.sets);
+    EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids)) << corner.x << " " << corner.y;
+  }
+}
+
+// An instance belongs to the sets that named it last. The earlier ones know of nothing that it does later.
+TEST(WorldSets, WhatOtherSetsNameIsATombstoneOfTheEarlierOnes) {
+  WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)});
+  const SetsId both = scene.world.useSets(scene.ids, scene.sets.boxes());
+  WorldCuller culler({.occlusion = false});
+  culler.useSets(both, &scene.sets);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+  const fake_sets::FakeSets of_wall(std::span(scene.boxes).first(1));
+  const SetsId wall_alone = scene.world.useSets(std::span(scene.ids).first(1), of_wall.boxes());
+  EXPECT_EQ(scene.world.tombstones(both), 1u);
+  EXPECT_EQ(scene.world.tombstones(wall_alone), 0u);
+  scene.world.setTransform(scene.ids[0], WallBeforeCrate::wallMovedBy(20.0));
+  EXPECT_EQ(scene.world.tombstones(wall_alone), 1u);
+  EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+}
+
+// A wall that is not drawn in a view hides nothing there.
+TEST(WorldSets, HideNothingInViewsThatLeaveOutAGroupOfTheirObjects) {
+  for (const std::uint32_t of_wall : {1u, 3u}) {
+    WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0), .groups = of_wall});
+    scene.world.setGroups(scene.ids[1], 3);
+    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    for (const std::uint32_t drawn : {1u, 2u, 3u}) {
+      WorldCuller culler({.occlusion = false, .groups = drawn});
+      culler.useSets(id, &scene.sets);
+      EXPECT_EQ(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids), (of_wall & drawn) == 0)
+          << of_wall << " " << drawn;
+    }
+  }
+}
+
+// Two cells that lie in the same place: what one set says, or no longer says, is about its own objects.
+TEST(WorldSets, OfSeveralCellsSpeakForTheirOwnObjectsAlone) {
+  WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)});
+  World& world = scene.world;
+  std::vector<InstanceId> others;
+  for (const InstanceId id : scene.ids) {
+    others.push_back(
+        world.add({.mesh = world.meshOf(id),
+                   .world_from_mesh = id == scene.ids[0] ? WallBeforeCrate::wallMovedBy(0.0)
+                                                         : boxAt({-0.5, -0.5, -15}, {1, 1, 1})}));
+  }
+  fake_sets::FakeSets sets[] = {fake_sets::FakeSets(scene.boxes), fake_sets::FakeSets(scene.boxes)};
+  WorldCuller culler({.occlusion = false});
+  culler.useSets(world.useSets(scene.ids, sets[0].boxes()), &sets[0]);
+  culler.useSets(world.useSets(others, sets[1].boxes()), &sets[1]);
+  for (const unsigned hides : {3u, 1u, 3u, 2u, 0u, 1u}) {  // a bit for each cell
+    for (const unsigned cell : {0u, 1u}) {
+      if ((hides >> cell & 1) != 0) {
+        sets[cell].use(1, {true, false});
+      } else {
+        sets[cell].useEverything();
+      }
+    }
+    EXPECT_EQ(WallBeforeCrate::showsCrate(culler, world, scene.ids), (hides & 1) == 0) << hides;
+    EXPECT_EQ(WallBeforeCrate::showsCrate(culler, world, others), (hides & 2) == 0) << hides;
+  }
+}
+
+TEST(WorldSets, WhatChangesItsGroupsIsATombstone) {
+  WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)});
+  const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+  WorldCuller culler({.occlusion = false, .groups = 1});
+  culler.useSets(id, &scene.sets);
+  EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+  scene.world.setGroups(scene.ids[0], 2);
+  EXPECT_TRUE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
+}
+
 // The culler's sets are of as many objects as the world was told of.
 TEST(WorldSets, OfOtherBoxesOrInAnotherOrderLeaveNothingOut) {
   WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
