@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -274,7 +275,8 @@ TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
   const OccluderSet occluders = street.wallOf(ObjectId(0u));
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy fitting = buildHierarchy(street.bounds, {}, {.kind = kind, .max_leaf_objects = 1});
-    std::vector<Box> more = street.bounds, moved = street.bounds;
+    std::vector<Box> more = street.bounds, moved = street.bounds, without_place = street.bounds;
+    without_place[1].max.y = std::numeric_limits<float>::quiet_NaN();
     more.push_back({{2, 2, -3}, {3, 3, -2}});
     moved[1] = {{-1, 9, -12}, {1, 10, -10}};
     Hierarchy beyond = fitting, invalid = fitting, twice = fitting;
@@ -296,6 +298,7 @@ TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
       EXPECT_EQ(keptBy(fitting, more), firstObjects(4)) << name;
       EXPECT_EQ(keptBy(fitting, std::span(street.bounds).first(1)), firstObjects(3)) << name;
       EXPECT_EQ(keptBy(fitting, moved), firstObjects(3)) << name;
+      EXPECT_EQ(keptBy(fitting, without_place), firstObjects(3)) << name;
       Objects with_beyond = firstObjects(3);
       with_beyond.push_back(ObjectId(70'000u));
       EXPECT_EQ(keptBy(beyond, street.bounds), with_beyond) << name;

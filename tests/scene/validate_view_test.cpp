@@ -64,6 +64,19 @@ TEST(ValidateView, NormalisesAxesOfAnyLength) {
   }
 }
 
+TEST(ValidateView, RefusesAxesOfWhichAnyTwoAreNotPerpendicular) {
+  for (int pair = 0; pair < 3; ++pair) {
+    for (const double skew : {-0.5, -1e-4, 1e-4, 0.5}) {
+      View view = viewAlong({1, 0.5, -2});
+      const View straight = view;
+      Vec3d* const axes[] = {&view.right, &view.up, &view.forward};
+      const Vec3d other[] = {straight.up, straight.forward, straight.right};
+      *axes[pair] = normalized(*axes[pair] + other[pair] * skew);
+      expectError(view, "perpendicular");
+    }
+  }
+}
+
 TEST(ValidateView, MirrorsALeftHandedBasis) {
   const View right_handed = viewAlong({1, 0.5, -2});
   View view = right_handed;

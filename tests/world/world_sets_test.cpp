@@ -224,6 +224,7 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
     view.eye = view.eye + place;
     culler.cull(world, view);
     EXPECT_EQ(sets.last_eye, baked.view.eye);
+    EXPECT_EQ(sets.last_near_distance, nearDistance(view));
     EXPECT_EQ(culler.visible().size(), countOf(baked.members));
     for (const InstanceId gone : ids) {
       world.remove(gone);

@@ -163,6 +163,83 @@ TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
   EXPECT_TRUE(shows());
 }
 
+// A panel goes to another place in a batch or by itself: after the join, or between its preparation and its
+// use, and then not for the first time.
+TEST(World, AMemberThatIsAlwaysOnTheMoveHidesNothingWhereItWas) {
+  for (const bool prepared_before : {false, true}) {
+    for (const bool in_batch : {false, true}) {
+      PanelsAndCrate scene;
+      World& world = scene.story.world;
+      const MeshId mesh = world.meshOf(scene.panels[0]);
+      for (InstanceId& panel : scene.panels) {
+        const Mat4 place = scene.story.told.at(panel.value).world_from_mesh;
+        scene.story.remove(panel);
+        panel = world.add({.mesh = mesh, .world_from_mesh = place, .moves = true});
+      }
+      const InstanceId moved = scene.panels[4];
+      const auto moveTo = [&](const Vec3d& corner) {
+        const Mat4 place = boxAt(corner, {0.5, 4, 1});
+        if (in_batch) {
+          world.setTransforms({&moved, 1}, {&place, 1});
+        } else {
+          world.setTransform(moved, place);
+        }
+      };
+      const auto showsCrate = [&] {
+        scene.culler.cull(world, scene.view);
+        scene.culler.cull(world, scene.view);
+        return keeps(scene.culler, scene.crate);
+      };
+      const Vec3d home(0, -2, -4);
+      moveTo(home + Vec3d(9, 0, 0));
+      moveTo(home);
+      const WorldJoin prepared = world.prepareJoin(scene.panels);
+      if (!prepared_before) {
+        world.use(prepared);
+        EXPECT_FALSE(showsCrate()) << in_batch;
+      }
+      moveTo(home + Vec3d(9, 0, 0));
+      if (prepared_before) {
+        world.use(prepared);
+      }
+      EXPECT_TRUE(showsCrate()) << prepared_before << ' ' << in_batch;
+    }
+  }
+}
+
+// The panels hide the crate together, but one of them is not drawn.
+TEST(World, AJoinHidesNothingInViewsThatLeaveOutAGroupOfItsMembers) {
+  for (const std::uint32_t part_triangles : {1u, 1024u}) {
+    PanelsAndCrate scene;
+    World& world = scene.story.world;
+    world.setGroups(scene.panels[4], 2);
+    world.use(world.prepareJoin(scene.panels, {.part_triangles = part_triangles}));
+    for (const std::uint32_t groups : {1u, 2u, 3u}) {
+      WorldCuller culler({.raster = {.width = 64, .height = 36}, .groups = groups});
+      world.setGroups(scene.crate, 3);
+      culler.cull(world, scene.view);
+      culler.cull(world, scene.view);
+      EXPECT_TRUE(keeps(culler, scene.crate)) << groups;
+    }
+  }
+}
+
+// Two worlds are told the same, but for where a panel is.
+TEST(World, AJoinOfAnotherWorldHidesNothing) {
+  PanelsAndCrate here, there;
+  const Mat4 home = boxAt({0, -2, -4}, {0.5, 4, 1}), away = boxAt({9, -2, -4}, {0.5, 4, 1}),
+             farther = boxAt({19, -2, -4}, {0.5, 4, 1});
+  here.story.move(here.panels[4], farther);
+  here.story.move(here.panels[4], away);
+  there.story.move(there.panels[4], away);
+  there.story.move(there.panels[4], home);
+  const WorldJoin prepared = there.story.world.prepareJoin(there.panels);
+  there.story.world.use(prepared);
+  EXPECT_FALSE(there.showsCrate());
+  here.story.world.use(prepared);
+  EXPECT_TRUE(here.showsCrate());
+}
+
 // A wall is seen from its back, which is drawn at first. The later join is as large as the first one and lies
 // in the same place.
 TEST(World, AJoinMadeAnewHidesNothingByBacksThatAreNotDrawn) {
