@@ -154,6 +154,37 @@ test::Piece blockPiece(const Vec3f& low, const Vec3f& high, std::uint32_t materi
   return piece;
 }
 
+// A wall becomes glass, is said to hide nothing, or loses a corner. Its box and the number of its triangles
+// stay what they were, and all else does.
+TEST(Update, AWallThatHidesLessIsAnotherThoughItsBoxIsTheSame) {
+  EditedScene scene;
+  scene.materials = {{"wall", Opacity::kOpaque, false, {}}, {"glass", Opacity::kBlended, false, {}}};
+  scene.pieces = {blockPiece({0, -0.25f, 0}, {8, 0, 8}, 0), blockPiece({3.75f, 0, 0}, {4, 3, 8}, 0)};
+  for (int i = 0; i < 4; ++i) {
+    const auto z = static_cast<float>(2 * i);
+    scene.pieces.push_back(blockPiece({6, 1.25f, z + 0.5f}, {6.5f, 1.75f, z + 1}, 0));
+  }
+  std::vector<EditedScene> edited(3, scene);
+  edited[0].pieces[1].material = MaterialId(1u);
+  edited[1].pieces[1].mark = OccluderMark::kNever;
+  for (Vec3f& corner : edited[2].pieces[1].corners) {
+    corner.y = corner.y > 1.0f && corner.z > 1.0f ? 0.25f : corner.y;
+  }
+  for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    const BakeSettings settings{
+        .occlusion = occlusion, .triangle_budget = 12, .max_depth = 2, .near_distance = 0.05};
+    const Answered before = AnsweredBake(scene.scene(), settings).inFull();
+    for (std::size_t i = 0; i < edited.size(); ++i) {
+      const Scene now = edited[i].scene();
+      AnsweredBake bake(now, settings);
+      const Answered full = bake.inFull(), made = bake.after(before.answers);
+      EXPECT_TRUE(made.taken.difference.empty()) << i;
+      EXPECT_FALSE(full.file == before.file) << "edit " << i << " shows nothing";
+      EXPECT_TRUE(made.file == full.file) << "edit " << i;
+    }
+  }
+}
+
 // What narrowing decided depends on all of the shaft, also where that reaches beyond all that hid before.
 TEST(Update, AWallThatComesBeyondAllOthersHidesWhereNarrowingIsAllowed) {
   EditedScene scene;
