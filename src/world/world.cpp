@@ -395,11 +395,14 @@ void World::setTransforms(std::span<const InstanceId> instances, std::span<const
   WorldData& own = *data_;
   const std::size_t count = std::min(instances.size(), world_from_mesh.size());
   own.moves.resize(std::max(own.moves.size(), count));
-  parallel_for(static_cast<std::uint32_t>(count), [&](std::uint32_t begin, std::uint32_t end) {
+  const auto move = [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) {
       own.moves[i] = own.movedInPlace(instances[i], world_from_mesh[i], own.version + i + 1);
     }
-  });
+  };
+  // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
+  parallel_for(static_cast<std::uint32_t>(count),
+               [&move](std::uint32_t begin, std::uint32_t end) { move(begin, end); });
   own.version += count;
   own.moving.move(std::span(own.moves).first(count));
   for (std::size_t i = 0; i < count; ++i) {

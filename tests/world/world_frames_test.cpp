@@ -47,10 +47,16 @@ struct Crowd {
   // The same changes in each round of 40 frames, but for the first one, which takes them out of the join.
   void change(int frame) {
     Chance chance(static_cast<std::uint32_t>(frame % 40));
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 30; ++i) {
       story.world.setTransform(ids[chance.below(static_cast<std::uint32_t>(ids.size()))],
                                chance.placement(60.0, 6.0));
     }
+    std::array<Mat4, 20> places;
+    for (Mat4& place : places) {
+      place = chance.placement(60.0, 6.0);
+    }
+    const std::size_t first = chance.below(static_cast<std::uint32_t>(ids.size() - places.size()));
+    story.world.setTransforms(std::span(ids).subspan(first, places.size()), places);
     for (int i = 0; i < 5; ++i) {
       const InstanceId id = ids[chance.below(static_cast<std::uint32_t>(ids.size()))];
       story.world.setShown(id, i % 2 == 0);
