@@ -20,9 +20,9 @@
 #include <cstdlib>
 #include <map>
 #include <random>
+#include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "bench/benchmark_scene.h"
@@ -39,19 +39,10 @@ constexpr std::size_t kFrames = 170, kStep = 2;
 constexpr double kCellsAlong = 4.0;
 
 WorldMesh meshOf(const Scene& scene, const Object& object) {
-  std::vector<Vec3f> positions;
-  std::vector<std::uint32_t> indices;
-  std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-  for (const std::uint32_t index : scene.view().indicesOf(object)) {
-    const auto [found, is_new] = numbers.emplace(index, static_cast<std::uint32_t>(positions.size()));
-    if (is_new) {
-      positions.push_back(scene.positions[index]);
-    }
-    indices.push_back(found->second);
-  }
+  const std::span<const std::uint32_t> indices = scene.view().indicesOf(object);
   const Material& material = scene.materials[object.material.value];
-  return valueOrExit(makeMesh({.positions = positions.data(),
-                               .vertex_count = static_cast<std::uint32_t>(positions.size()),
+  return valueOrExit(makeMesh({.positions = scene.positions.data(),
+                               .vertex_count = static_cast<std::uint32_t>(scene.positions.size()),
                                .indices = indices.data(),
                                .index_count = indices.size()},
                               {.opacity = material.opacity, .double_sided = material.double_sided}),

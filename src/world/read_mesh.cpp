@@ -53,6 +53,21 @@ std::string faultOf(const MeshView& mesh, std::size_t corners) {
   return {};
 }
 
+// Reads those vertices that triangles name, in the order of the buffer, and numbers them anew.
+void readNamed(const MeshView& mesh, ReadMesh& read) {
+  std::vector<std::uint32_t> named = read.indices;
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  read.positions.reserve(named.size());
+  for (const std::uint32_t vertex : named) {
+    read.positions.push_back(positionOf(mesh, vertex));
+  }
+  for (std::uint32_t& vertex : read.indices) {
+    const auto found = std::lower_bound(named.begin(), named.end(), vertex);
+    vertex = static_cast<std::uint32_t>(found - named.begin());
+  }
+}
+
 }  // namespace
 
 Result<ReadMesh> readMesh(const MeshView& mesh) {
@@ -61,10 +76,6 @@ Result<ReadMesh> readMesh(const MeshView& mesh) {
     return Error{std::move(fault)};
   }
   ReadMesh read;
-  read.positions.resize(mesh.vertex_count);
-  for (std::uint32_t vertex = 0; vertex < mesh.vertex_count; ++vertex) {
-    read.positions[vertex] = positionOf(mesh, vertex);
-  }
   // What is clockwise in a picture of a left-handed space is not in one of the same coordinates in a
   // right-handed space, which is its mirror image.
   const bool turned = mesh.clockwise != mesh.left_handed;
@@ -77,7 +88,17 @@ Result<ReadMesh> readMesh(const MeshView& mesh) {
       return Error{"index " + std::to_string(from) + " is " + std::to_string(read.indices[i]) +
                    ", but the mesh has " + std::to_string(mesh.vertex_count) + " vertices"};
     }
-    read.finite = read.finite && isFinite(read.positions[read.indices[i]]);
+  }
+  if (mesh.vertex_count <= corners) {
+    read.positions.resize(mesh.vertex_count);
+    for (std::uint32_t vertex = 0; vertex < mesh.vertex_count; ++vertex) {
+      read.positions[vertex] = positionOf(mesh, vertex);
+    }
+  } else {
+    readNamed(mesh, read);
+  }
+  for (const std::uint32_t vertex : read.indices) {
+    read.finite = read.finite && isFinite(read.positions[vertex]);
   }
   return read;
 }

@@ -13,7 +13,7 @@ namespace sightline::world {
 
 // A mesh as it was read from the caller's memory.
 struct ReadMesh {
-  std::vector<Vec3f> positions;
+  std::vector<Vec3f> positions;        // no more of them than of indices; some may be named by no triangle
   std::vector<std::uint32_t> indices;  // counter-clockwise in a right-handed space
   bool finite = true;                  // all positions that are used
 };

@@ -58,6 +58,43 @@ TEST(WorldMesh, SaysWhatWasWeldedAndWhatStaysOpen) {
   EXPECT_TRUE(light.surfaces.parts.empty());
 }
 
+// Its triangles name some vertices of a buffer of many meshes, with vertices of others between them.
+TEST(WorldMesh, OfALargeBufferIsAsOfItsOwn) {
+  const std::vector<Vec3f> own = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<std::uint32_t> indices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  const std::vector<std::uint32_t> in_buffer = {3, 70, 900, 999};
+  std::vector<Vec3f> buffer(1000, Vec3f(std::numeric_limits<float>::quiet_NaN(), 5.0f, 5.0f));
+  std::vector<std::uint32_t> buffer_indices;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    buffer[in_buffer[i]] = own[i];
+  }
+  for (const std::uint32_t index : indices) {
+    buffer_indices.push_back(in_buffer[index]);
+  }
+  const auto made = [](const std::vector<Vec3f>& positions, const std::vector<std::uint32_t>& of) {
+    return *makeMesh({.positions = positions.data(),
+                      .vertex_count = static_cast<std::uint32_t>(positions.size()),
+                      .indices = of.data(),
+                      .index_count = of.size()});
+  };
+  const WorldMesh mesh = made(own, indices), shared = made(buffer, buffer_indices);
+  EXPECT_EQ(shared.bounds, (Box{{0, 0, 0}, {1, 1, 1}}));
+  EXPECT_EQ(shared.triangles, 4u);
+  EXPECT_EQ(shared.vertices, 4u);
+  EXPECT_EQ(shared.positions, 4u);
+  EXPECT_EQ(shared.open_edges, 0u);
+  EXPECT_EQ(shared.volume, mesh.volume);
+  EXPECT_GT(mesh.volume, 0.0);
+  EXPECT_FALSE(mesh.surfaces.vertices.empty());
+  EXPECT_EQ(surfaceBytes(shared.surfaces), surfaceBytes(mesh.surfaces));
+  // What no triangle names is not read, so it costs nothing, however much of it there is.
+  const Result<WorldMesh> first = makeMesh({.positions = own.data(),
+                                            .vertex_count = 0xffffffffu,
+                                            .indices = indices.data(),
+                                            .index_count = indices.size()});
+  EXPECT_EQ(surfaceBytes(first->surfaces), surfaceBytes(mesh.surfaces));
+}
+
 TEST(WorldMesh, SaysWhetherItIsInsideOut) {
   Shape box = boxShape();
   for (Vec3f& corner : box.corners) {
