@@ -63,7 +63,7 @@ void joinCells(World& world, const std::vector<InstanceId>& ids) {
         .push_back(id);
   }
   for (const auto& [place, members] : cells) {
-    world.use(world.prepareJoin(members));
+    world.addJoin(makeJoin(world.joinInput(members)));
   }
 }
 

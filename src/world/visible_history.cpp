@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "src/world/world_data.h"
-
 namespace sightline {
 
 void VisibleHistory::update(const World& world, const WorldCuller& culler, double seconds) {
@@ -19,19 +17,18 @@ void VisibleHistory::update(const World& world, const WorldCuller& culler, doubl
                  std::back_inserter(held_));
   std::erase_if(held_, [&](InstanceId id) {
     State& state = states_[id.value];
-    const std::uint64_t born = world.has(id) ? world.data_->instances[id.value].born : 0;
+    const std::uint64_t born = world.bornOf(id);
     if (state.born != born) {  // another instance has the id by now
       state = {.born = born};
     }
-    const bool visible =
-        std::binary_search(culler.visible().begin(), culler.visible().end(), id) && world.has(id);
+    const bool visible = culler.isVisible(id) && born != 0;
     if (visible) {
       state.seen_at = time_s_;
       state.opacity = first_ ? 1.0f : std::min(state.opacity + change, 1.0f);
     } else {
       state.opacity = std::max(state.opacity - change, 0.0f);
     }
-    state.held = world.has(id) && (visible || (state.held && time_s_ - state.seen_at < settings_.hold_s));
+    state.held = born != 0 && (visible || (state.held && time_s_ - state.seen_at < settings_.hold_s));
     if (!state.held) {
       state = {};
     }

@@ -192,7 +192,7 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   own.moves = given.moves;
   own.groups = given.groups;
   extras.resize(instances.size());
-  extras[id] = {.mark = given.mark};
+  extras[id] = {.user_data = given.user_data};
   own.displacement = static_cast<float>(given.displacement);
   if (!(double{own.displacement} >= given.displacement)) {
     own.displacement = std::nextafterf(own.displacement, std::numeric_limits<float>::infinity());
@@ -455,8 +455,15 @@ std::size_t World::idBound() const {
 MeshId World::meshOf(InstanceId instance) const {
   return has(instance) ? MeshId(data_->instances[instance.value].mesh) : MeshId();
 }
-std::uint64_t World::markOf(InstanceId instance) const {
-  return has(instance) ? data_->extras[instance.value].mark : 0;
+std::uint64_t World::userDataOf(InstanceId instance) const {
+  return has(instance) ? data_->extras[instance.value].user_data : 0;
+}
+std::uint64_t World::bornOf(InstanceId instance) const {
+  return has(instance) ? data_->instances[instance.value].born : 0;
+}
+Box World::boxFromOrigin(const Vec3d& min_world, const Vec3d& max_world) const {
+  const Vec3d min = min_world - data_->origin, max = max_world - data_->origin;
+  return {{below(min.x), below(min.y), below(min.z)}, {above(max.x), above(max.y), above(max.z)}};
 }
 Box World::boundsOf(InstanceId instance) const {
   return has(instance) ? data_->boundsOf(instance.value) : Box{};

@@ -80,7 +80,7 @@ struct InstanceData {
 };
 
 struct InstanceExtra {
-  std::uint64_t mark = 0;
+  std::uint64_t user_data = 0;
   std::uint32_t in_mesh = 0;       // its place in MeshData::instances
   std::uint32_t in_unbounded = 0;  // with Whereabouts::kUnbounded: its place in WorldData::unbounded
   // With InstanceData::baked: it is that object of those sets.

@@ -67,10 +67,12 @@ bool isSolid(const Mat4& m) {
 
 }  // namespace
 
-WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings,
-                             const ParallelFor& parallel_for) const {
+JoinInput World::joinInput(std::span<const InstanceId> instances) const {
   const WorldData& own = *data_;
-  WorldJoin join{.world = own.number};
+  JoinInput input;
+  WorldJoin& join = input.join;
+  Scene& scene = input.scene;
+  join.world = own.number;
   Box all;
   for (const InstanceId id : instances) {
     if (has(id) && own.hides(id.value) && boundsOf(id).wellFormed() &&
@@ -83,12 +85,11 @@ WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const Surfac
   std::sort(join.instances.begin(), join.instances.end());
   join.instances.erase(std::unique(join.instances.begin(), join.instances.end()), join.instances.end());
   if (join.instances.empty()) {
-    return join;
+    return input;
   }
   // A whole number, so that positions that are short numbers stay so.
   const Vec3d middle = center(all) + own.origin;
   join.origin = {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
-  Scene scene;
   scene.materials = {{.double_sided = false}, {.double_sided = true}};
   for (const InstanceId id : join.instances) {
     join.versions.push_back(own.instances[id.value].version);
@@ -112,12 +113,16 @@ WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const Surfac
     }
     scene.objects.push_back(object);
   }
-  updateBounds(scene);
-  join.surfaces = findSurfaces(scene.view(), settings, parallel_for);
-  return join;
+  return input;
 }
 
-JoinId World::use(WorldJoin given) {
+WorldJoin makeJoin(JoinInput input, const SurfaceSettings& settings, const ParallelFor& parallel_for) {
+  updateBounds(input.scene);
+  input.join.surfaces = findSurfaces(input.scene.view(), settings, parallel_for);
+  return std::move(input.join);
+}
+
+JoinId World::addJoin(WorldJoin given) {
   WorldData& own = *data_;
   const std::uint32_t number = numberIn(own.joins, own.free_joins);
   Joined& joined = own.joins[number];
@@ -157,7 +162,7 @@ JoinId World::use(WorldJoin given) {
   return JoinId(number);
 }
 
-void World::drop(JoinId join) {
+void World::removeJoin(JoinId join) {
   WorldData& own = *data_;
   if (join.value >= own.joins.size() || !own.joins[join.value].there) {
     return;

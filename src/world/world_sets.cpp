@@ -73,7 +73,7 @@ void WorldData::leaveSets(std::uint32_t id) {
 
 }  // namespace world
 
-SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin,
+SetsId World::addSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin,
                       std::span<const ObjectId> doors) {
   WorldData& own = *data_;
   // A number is never used again: a culler may not have been told that its sets were dropped.
@@ -116,7 +116,7 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
   return SetsId(number);
 }
 
-void World::dropSets(SetsId sets) {
+void World::removeSets(SetsId sets) {
   WorldData& own = *data_;
   if (sets.value >= own.sets.size() || !own.sets[sets.value].there) {
     return;

@@ -47,7 +47,7 @@ TEST(WorldSets, OfARealBakeSurviveEdits) {
                           .index_count = object.index_count};
       ids.push_back(world.add({.mesh = world.addMesh(*makeMesh(mesh))}));
     }
-    const SetsId sets = world.useSets(ids, query.boxes());
+    const SetsId sets = world.addSets(ids, query.boxes());
     EXPECT_EQ(world.tombstones(sets), 0u);
     WorldCuller culler({.occlusion = false}), plain({.occlusion = false});
     culler.useSets(sets, &query);

@@ -35,7 +35,7 @@ struct HardStory {
   std::vector<Shape> shapes = allShapes();
   std::vector<MeshId> meshes;
   std::map<std::uint32_t, Piece> pieces;  // by InstanceId
-  std::optional<WorldJoin> prepared;
+  std::optional<JoinInput> prepared;
   std::vector<JoinId> joins;
   Vec3d eye;  // from the base
   double heading = 0.0;
@@ -169,11 +169,11 @@ struct HardStory {
         some.emplace_back(id);
       }
     }
-    prepared = world.prepareJoin(some);
+    prepared = world.joinInput(some);
   }
   void dropOne() {
     const std::size_t dropped = chance.below(static_cast<std::uint32_t>(joins.size()));
-    world.drop(joins[dropped]);
+    world.removeJoin(joins[dropped]);
     joins[dropped] = joins.back();
     joins.pop_back();
   }
@@ -212,7 +212,7 @@ struct HardStory {
         break;
       case 6:
         if (prepared && joins.size() < 8) {
-          joins.push_back(world.use(*std::exchange(prepared, std::nullopt)));
+          joins.push_back(world.addJoin(makeJoin(*std::exchange(prepared, std::nullopt))));
         } else if (!joins.empty()) {
           dropOne();
         }
@@ -220,7 +220,7 @@ struct HardStory {
       case 7:
         prepare();
         if (chance.below(2) == 0 && joins.size() < 8) {
-          joins.push_back(world.use(*std::exchange(prepared, std::nullopt)));
+          joins.push_back(world.addJoin(makeJoin(*std::exchange(prepared, std::nullopt))));
         }
         break;
       case 8:

@@ -42,7 +42,7 @@ struct Crowd {
     for (std::uint32_t i = 0; i < count; ++i) {
       ids.push_back(story.add(i % 3, chance.placement(60.0, 6.0)));
     }
-    story.world.use(story.world.prepareJoin(std::span(ids).first(count / 4)));
+    story.world.addJoin(makeJoin(story.world.joinInput(std::span(ids).first(count / 4))));
   }
   // The same changes in each round of 40 frames, but for the first one, which takes them out of the join.
   void change(int frame) {

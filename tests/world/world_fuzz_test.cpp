@@ -88,11 +88,11 @@ TEST(WorldFuzz, AnInstanceThatIsReplacedKeepsItsIdAndIsAnother) {
   WorldCuller culler;
   const View view = viewFrom({0.5, 0.5, 4}, {0, 0, -1});
   culler.cull(story.world, view);
-  story.world.replace(wall, {.mesh = story.meshes[1], .mark = 7});
+  story.world.replace(wall, {.mesh = story.meshes[1], .user_data = 7});
   story.world.replace(InstanceId(500u), {.mesh = story.meshes[1]});
   EXPECT_EQ(story.world.instances(), 2u);
   EXPECT_EQ(story.world.meshOf(wall), story.meshes[1]);
-  EXPECT_EQ(story.world.markOf(wall), 7u);
+  EXPECT_EQ(story.world.userDataOf(wall), 7u);
   EXPECT_EQ(story.world.meshOf(other), story.meshes[0]);
   EXPECT_FALSE(culler.isVisible(InstanceId(500u)));
   EXPECT_FALSE(culler.isVisible(InstanceId()));

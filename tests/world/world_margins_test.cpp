@@ -45,9 +45,9 @@ struct JoinedWall {
     Mat4 behind;
     behind(2, 3) = -9.0;
     crate = story.add(0, behind);
-    WorldJoin join = story.world.prepareJoin(panels);
+    WorldJoin join = makeJoin(story.world.joinInput(panels));
     joined = join.instances.size();
-    story.world.use(std::move(join));
+    story.world.addJoin(std::move(join));
   }
   bool showsCrate() const {
     WorldCuller culler({.raster = {.width = 64, .height = 36}});
@@ -103,11 +103,11 @@ TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
     const InstanceId beside = story.add(0, small);
     small(0, 3) = 0.002;
     const InstanceId behind = story.add(0, small);
-    WorldJoin join = story.world.prepareJoin(panels);
+    WorldJoin join = makeJoin(story.world.joinInput(panels));
     ASSERT_EQ(join.instances.size(), 2u);
     EXPECT_EQ(join.rounding > 1e-3, far_away > 100.0);
     EXPECT_LE(join.rounding, 0x1p-24 * 2.0 * far_away);
-    story.world.use(std::move(join));
+    story.world.addJoin(std::move(join));
     View view = viewFrom({0.009, 0, 0}, {0, 0, -1});
     view.tan_half_fovy = 6e-3;
     view.z_near = 9.9;
@@ -137,9 +137,9 @@ TEST(WorldMargins, AJoinOfRoundedPositionsHidesOnlyIfThatIsAllowed) {
   small(2, 3) = -14.0;
   small(0, 3) = -0.4;
   const InstanceId behind_the_seam = story.add(0, small);
-  WorldJoin join = story.world.prepareJoin(panels);
+  WorldJoin join = makeJoin(story.world.joinInput(panels));
   EXPECT_GT(join.rounding, 0.0);
-  story.world.use(std::move(join));
+  story.world.addJoin(std::move(join));
   for (const double allowed : {WorldCullerSettings{}.join_rounding, 0.0}) {
     WorldCuller culler({.join_rounding = allowed});
     for (int frame = 0; frame < 3; ++frame) {
@@ -160,7 +160,7 @@ TEST(WorldMargins, AJoinOfAnotherWorldHidesNothing) {
     return std::pair(std::move(story), ids);
   };
   const auto [old_level, old_ids] = level(0.0);
-  const WorldJoin join = old_level->world.prepareJoin(std::span(old_ids).first(2));
+  const WorldJoin join = makeJoin(old_level->world.joinInput(std::span(old_ids).first(2)));
   ASSERT_EQ(join.instances.size(), 2u);
   const View view = viewFrom({0, 0, 0}, {0, 0, -1});
   const auto keepsCrate = [&](Story& story, InstanceId crate) {
@@ -171,14 +171,14 @@ TEST(WorldMargins, AJoinOfAnotherWorldHidesNothing) {
   };
   const auto [next_level, next_ids] = level(-30.0);
   ASSERT_EQ(next_ids, old_ids);
-  next_level->world.use(join);
+  next_level->world.addJoin(join);
   EXPECT_TRUE(keepsCrate(*next_level, next_ids[2]));
   Story empty(allShapes());
-  empty.world.use(join);
+  empty.world.addJoin(join);
   EXPECT_TRUE(keepsCrate(empty, empty.add(0, behind)));
   // A world that was moved is the same one.
   World moved = std::move(old_level->world);
-  moved.use(join);
+  moved.addJoin(join);
   old_level->world = std::move(moved);
   EXPECT_FALSE(keepsCrate(*old_level, old_ids[2]));
 }
@@ -230,9 +230,9 @@ TEST(WorldMargins, WhatStandsWhereItWasBakedIsNoTombstoneAndWhatWasMovedIs) {
       rounded.push_back(box);
     }
     fake_sets::FakeSets sets(rounded);
-    const SetsId standing = field.world.useSets(field.ids, sets.boxes(), origin);
+    const SetsId standing = field.world.addSets(field.ids, sets.boxes(), origin);
     EXPECT_EQ(field.world.tombstones(standing), 0u);
-    field.world.dropSets(standing);
+    field.world.removeSets(standing);
     // Each moved along one axis by eight millionths of its largest coordinate: that is no rounding.
     for (std::size_t i = 0; i < field.ids.size(); ++i) {
       const Box& box = rounded[i];
@@ -241,7 +241,7 @@ TEST(WorldMargins, WhatStandsWhereItWasBakedIsNoTombstoneAndWhatWasMovedIs) {
       moved(static_cast<int>(i % 3), 3) += (i % 2 == 0 ? 8e-6 : -8e-6) * size;
       field.world.setTransform(field.ids[i], moved);
     }
-    const SetsId shifted = field.world.useSets(field.ids, sets.boxes(), origin);
+    const SetsId shifted = field.world.addSets(field.ids, sets.boxes(), origin);
     EXPECT_EQ(field.world.tombstones(shifted), field.ids.size());
   }
 }
@@ -274,10 +274,10 @@ TEST(WorldMargins, AJoinThatAClipPlaneCutsHidesNothing) {
                                           place({-2, -2, z}, {4, 0, 0}, {0, 0, 1}),
                                           place({-2, -2, z + 1}, {4, 0, 0}, {0, 0, 1})};
   const InstanceId behind = world.add({.mesh = world.addMesh(boxMesh({{-0.5f, -0.5f, 5}, {0.5f, 0.5f, 6}}))});
-  WorldJoin join = world.prepareJoin(members);
+  WorldJoin join = makeJoin(world.joinInput(members));
   ASSERT_EQ(join.instances.size(), members.size());
   ASSERT_GT(join.rounding, 0.0);
-  world.use(std::move(join));
+  world.addJoin(std::move(join));
   const View view = viewFrom({0, 0, -3}, {0, 0, 1});
   for (const double beyond_wall : {-1e-3, 1e-12, 5e-10, 1e-8, 2e-8, 1e-6}) {
     WorldCuller culler;

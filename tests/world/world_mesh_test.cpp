@@ -122,7 +122,7 @@ TEST(WorldMesh, AnotherMeshHidesNothingFromWithinTheDrawnOne) {
   for (const bool joined : {false, true}) {
     if (joined) {
       const InstanceId both[] = {box};
-      world.use(world.prepareJoin(both));
+      world.addJoin(makeJoin(world.joinInput(both)));
     }
     for (const double z : {2.0, 9.0}) {
       WorldCuller culler;
@@ -265,14 +265,57 @@ TEST(WorldMesh, InsideABoxIsWhatHasAllCornersInside) {
   EXPECT_GT(inside, 50u);
 }
 
-TEST(World, MarksAreTheCallersOwn) {
+TEST(World, UserDataAreTheCallersOwn) {
   World world;
   const MeshId mesh = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
-  const InstanceId id = world.add({.mesh = mesh, .mark = 0xfedcba9876543210u});
-  EXPECT_EQ(world.markOf(id), 0xfedcba9876543210u);
+  const InstanceId id = world.add({.mesh = mesh, .user_data = 0xfedcba9876543210u});
+  EXPECT_EQ(world.userDataOf(id), 0xfedcba9876543210u);
   world.remove(id);
-  EXPECT_EQ(world.markOf(id), 0u);
-  EXPECT_EQ(world.markOf(world.add({.mesh = mesh})), 0u);
+  EXPECT_EQ(world.userDataOf(id), 0u);
+  EXPECT_EQ(world.userDataOf(world.add({.mesh = mesh})), 0u);
+}
+
+TEST(World, ItSaysThatAnIdWasGivenAgain) {
+  World world;
+  const MeshId mesh = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+  EXPECT_EQ(world.bornOf(InstanceId(0u)), 0u);
+  const InstanceId id = world.add({.mesh = mesh});
+  const std::uint64_t first = world.bornOf(id);
+  EXPECT_GT(first, 0u);
+  world.setTransform(id, boxAt({1, 2, 3}, {4, 5, 6}));
+  world.setShown(id, false);
+  EXPECT_EQ(world.bornOf(id), first);
+  world.replace(id, {.mesh = mesh});
+  const std::uint64_t second = world.bornOf(id);
+  EXPECT_GT(second, first);
+  world.remove(id);
+  EXPECT_EQ(world.bornOf(id), 0u);
+  EXPECT_EQ(world.bornOf(InstanceId()), 0u);
+  EXPECT_EQ(world.add({.mesh = mesh}), id);
+  EXPECT_GT(world.bornOf(id), second);
+}
+
+TEST(World, ABoxFromTheOriginContainsTheOneInWorldSpace) {
+  std::mt19937 engine(5);
+  const auto number = test::numbersFrom<double>(engine);
+  World world;
+  for (int i = 0; i < 1000; ++i) {
+    const double reach = std::ldexp(1.0, i % 30);
+    const auto point = [&](double size) {
+      return Vec3d(number(-size, size), number(-size, size), number(-size, size));
+    };
+    const Vec3d origin = point(reach), min = point(reach), max = min + Vec3d(1, 2, 3);
+    world.setOrigin(origin);
+    const Box box = world.boxFromOrigin(min, max);
+    EXPECT_TRUE(box.wellFormed());
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = min[axis] - origin[axis], high = max[axis] - origin[axis];
+      EXPECT_LT(box.min[axis], low);
+      EXPECT_GT(box.max[axis], high);
+      EXPECT_NEAR(box.min[axis], low, 0x1p-21 * std::abs(low) + 1e-30);
+      EXPECT_NEAR(box.max[axis], high, 0x1p-21 * std::abs(high) + 1e-30);
+    }
+  }
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST(WorldMoves, ManyAtOnceAreAsManyOneByOne) {
       }
     }
     for (Story* story : all) {
-      story->world.use(story->world.prepareJoin(std::span(ids).first(count / 4)));
+      story->world.addJoin(makeJoin(story->world.joinInput(std::span(ids).first(count / 4))));
       story->world.remove(ids[7]);
     }
     ids.push_back(InstanceId(100000u));

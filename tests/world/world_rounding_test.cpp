@@ -31,9 +31,9 @@ struct Place {
     return world.add({.mesh = mesh, .world_from_mesh = boxAt(at, size)});
   }
   double join(const std::vector<InstanceId>& members) {
-    WorldJoin join = world.prepareJoin(members);
+    WorldJoin join = makeJoin(world.joinInput(members));
     const double rounding = join.rounding;
-    world.use(std::move(join));
+    world.addJoin(std::move(join));
     return rounding;
   }
   bool keeps(InstanceId instance, const View& view, WorldCullerSettings settings = {}) const {

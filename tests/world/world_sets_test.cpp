@@ -48,7 +48,7 @@ TEST(WorldSets, HoldUntilSomethingInThemGoes) {
     fake_sets::FakeSets sets(baked.boxes);
     sets.use(7, baked.members);
     World& world = baked.story.world;
-    const SetsId id = world.useSets(baked.ids, sets.boxes());
+    const SetsId id = world.addSets(baked.ids, sets.boxes());
     EXPECT_EQ(world.tombstones(id), 0u);
     // Sets alone hide here, so that whatever they do wrong shows.
     WorldCuller culler({.occlusion = false}), plain({.occlusion = false});
@@ -104,7 +104,7 @@ TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
   baked.story.move(baked.ids[4], other);
   std::vector<InstanceId> given = baked.ids;
   given[5] = InstanceId(4711u);
-  const SetsId id = world.useSets(given, sets.boxes());
+  const SetsId id = world.addSets(given, sets.boxes());
   EXPECT_EQ(world.tombstones(id), 3u);
   WorldCuller culler({.occlusion = false}), plain({.occlusion = false});
   culler.useSets(id, &sets);
@@ -144,13 +144,13 @@ TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
   EXPECT_FALSE(keepsAll());
   world.setGroups(baked.ids[0], 2);
   EXPECT_FALSE(keepsAll());
-  world.dropSets(id);
+  world.removeSets(id);
   EXPECT_TRUE(keepsAll());
-  world.dropSets(id);
-  world.dropSets(SetsId());
+  world.removeSets(id);
+  world.removeSets(SetsId());
   // The number is not used again: the culler was not told that its sets were dropped.
   const fake_sets::FakeSets fewer(std::span(baked.boxes).first(3));
-  EXPECT_NE(world.useSets(given, fewer.boxes()), id);
+  EXPECT_NE(world.addSets(given, fewer.boxes()), id);
   EXPECT_TRUE(keepsAll());
   culler.useSets(id, nullptr);
   EXPECT_TRUE(keepsAll());
@@ -170,7 +170,7 @@ TEST(WorldSets, DoorsAreNoTombstones) {
   all.eye = {0, 1.5, 60};
   const std::vector<ObjectId> doors{ObjectId(7u), ObjectId(8u), ObjectId(9u), ObjectId(4711u)};
   baked.story.show(baked.ids[9], false);
-  const SetsId id = world.useSets(baked.ids, sets.boxes(), {}, doors);
+  const SetsId id = world.addSets(baked.ids, sets.boxes(), {}, doors);
   WorldCuller culler({.occlusion = false});
   culler.useSets(id, &sets);
   const auto kept = [&] {
@@ -189,7 +189,7 @@ TEST(WorldSets, DoorsAreNoTombstones) {
   // Without their names, they are tombstones of all sets.
   WorldCuller plain({.occlusion = false});
   plain.cull(world, all);
-  const SetsId unnamed = world.useSets(baked.ids, sets.boxes());
+  const SetsId unnamed = world.addSets(baked.ids, sets.boxes());
   EXPECT_EQ(world.tombstones(unnamed), 2u);
   culler.useSets(id, nullptr);
   culler.useSets(unnamed, &sets);
@@ -216,7 +216,7 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
       cell.push_back({.mesh = meshes[told.shape], .world_from_mesh = movedBy(told.world_from_mesh, place)});
     }
     world.add(cell, ids);
-    const SetsId id = world.useSets(ids, sets.boxes(), place);
+    const SetsId id = world.addSets(ids, sets.boxes(), place);
     EXPECT_EQ(world.tombstones(id), 0u);
     WorldCuller culler({.occlusion = false});
     culler.useSets(id, &sets);
@@ -229,7 +229,7 @@ TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
     for (const InstanceId gone : ids) {
       world.remove(gone);
     }
-    world.dropSets(id);
+    world.removeSets(id);
     culler.useSets(id, nullptr);
     culler.cull(world, view);
     EXPECT_TRUE(culler.visible().empty());
@@ -265,7 +265,7 @@ TEST(WorldSets, WhatWasMovedIsATombstoneHoweverFarFromTheOriginTheBakedSceneLies
       const Vec3d to(base, 0, 0);
       WallBeforeCrate scene({.world_from_mesh = movedBy(WallBeforeCrate::wallMovedBy(aside), to)});
       scene.world.setTransform(scene.ids[1], movedBy(boxAt({-0.5, -0.5, -15}, {1, 1, 1}), to));
-      const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes(), to);
+      const SetsId id = scene.world.addSets(scene.ids, scene.sets.boxes(), to);
       EXPECT_EQ(scene.world.tombstones(id), aside == 0.0 ? 0u : 1u) << base << " " << aside;
       WorldCuller culler({.occlusion = false});
       culler.useSets(id, &scene.sets);
@@ -286,7 +286,7 @@ TEST(WorldSets, WhatWasMovedByMoreThanRoundingAlongAnyAxisIsATombstone) {
     World world;
     const InstanceId ids[] = {world.add({.mesh = addShape(world, boxShape()),
                                          .world_from_mesh = movedBy(boxAt({1000, 0, 0}, {4, 3, 0.25}), by)})};
-    EXPECT_EQ(world.tombstones(world.useSets(ids, sets.boxes())), moved ? 1u : 0u) << by.x << " " << by.y;
+    EXPECT_EQ(world.tombstones(world.addSets(ids, sets.boxes())), moved ? 1u : 0u) << by.x << " " << by.y;
   }
 }
 
@@ -378,7 +378,7 @@ TEST(WorldSets, OfOtherBoxesOrInAnotherOrderLeaveNothingOut) {
   WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
   const std::vector<Box> as_it_is{{{17, -3, -11}, {23, 3, -10}}, scene.boxes[1]};
   fake_sets::FakeSets right(as_it_is), exchanged(std::vector{as_it_is[1], as_it_is[0]});
-  const SetsId id = scene.world.useSets(scene.ids, right.boxes());
+  const SetsId id = scene.world.addSets(scene.ids, right.boxes());
   EXPECT_EQ(scene.world.tombstones(id), 0u);
   exchanged.use(1, {true, false});
   WorldCuller culler({.occlusion = false});
@@ -397,8 +397,8 @@ TEST(WorldSets, OfOneWorldSayNothingAboutAnotherOne) {
   WallBeforeCrate hidden({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)}),
       seen({.world_from_mesh = WallBeforeCrate::wallMovedBy(20.0)});
   const fake_sets::FakeSets of_seen(std::vector<Box>{{{17, -3, -11}, {23, 3, -10}}, seen.boxes[1]});
-  const SetsId id = hidden.world.useSets(hidden.ids, hidden.sets.boxes());
-  EXPECT_EQ(seen.world.useSets(seen.ids, of_seen.boxes()), id);
+  const SetsId id = hidden.world.addSets(hidden.ids, hidden.sets.boxes());
+  EXPECT_EQ(seen.world.addSets(seen.ids, of_seen.boxes()), id);
   WorldCuller culler({.occlusion = false});
   culler.useSets(id, &hidden.sets);
   EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, hidden.world, hidden.ids));
@@ -416,7 +416,7 @@ TEST(WorldSets, WhatIsSaidToHideNothingIsATombstoneWhereverThatIsSaid) {
                            .occludes = how != 2,
                            .displacement = how == 3 ? 0.5 : 0.0},
                           shape);
-    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    const SetsId id = scene.world.addSets(scene.ids, scene.sets.boxes());
     EXPECT_EQ(scene.world.tombstones(id), how == 0 ? 0u : 1u) << how;
     WorldCuller culler({.occlusion = false});
     culler.useSets(id, &scene.sets);

@@ -85,7 +85,7 @@ TEST(WorldSight, WhatIsIgnoredHidesNothing) {
   const Box crate{{-0.5f, -0.5f, -9.0f}, {0.5f, 0.5f, -8.0f}};
   WorldSight sight;
   EXPECT_EQ(sight.look(story.world, {0, 0, 0}, crate), Visibility::kPartial);
-  story.world.use(story.world.prepareJoin(panels));
+  story.world.addJoin(makeJoin(story.world.joinInput(panels)));
   EXPECT_EQ(sight.look(story.world, {0, 0, 0}, crate), Visibility::kHidden);
   EXPECT_EQ(sight.look(story.world, {0, 0, 0}, crate, {&panels[1], 1}), Visibility::kPartial);
   EXPECT_EQ(sight.look(story.world, {0, 0, 0}, crate, panels), Visibility::kVisible);

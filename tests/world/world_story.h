@@ -298,10 +298,10 @@ struct RandomStory {
           some.push_back(id);
         }
       }
-      joins.push_back(story.world.use(story.world.prepareJoin(some)));
+      joins.push_back(story.world.addJoin(makeJoin(story.world.joinInput(some))));
     } else if (kind == 4 && !joins.empty()) {
       const std::size_t dropped = chance.below(static_cast<std::uint32_t>(joins.size()));
-      story.world.drop(joins[dropped]);
+      story.world.removeJoin(joins[dropped]);
       joins[dropped] = joins.back();
       joins.pop_back();
     } else {

@@ -92,7 +92,7 @@ TEST(WorldTargets, SeveralJoinsRememberWhatIsOfUseEach) {
     crates.push_back(story.add(0, boxAt({x, 0, -44.0 - i % 5}, {0.25, 0.25, 0.25})));
   }
   for (const std::vector<InstanceId>& join : members) {
-    story.world.use(story.world.prepareJoin(join));
+    story.world.addJoin(makeJoin(story.world.joinInput(join)));
   }
   WorldCuller culler;
   std::uint64_t edges = 0, edges_anew = 0;

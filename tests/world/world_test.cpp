@@ -7,7 +7,9 @@
 
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <tuple>
+#include <utility>
 
 #include "sightline/world/world_culler.h"
 #include "tests/world/world_story.h"
@@ -142,24 +144,24 @@ TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
   const std::vector<InstanceId>& panels = scene.panels;
   const auto shows = [&] { return scene.showsCrate(); };
   EXPECT_TRUE(shows());
-  WorldJoin prepared = story.world.prepareJoin(panels);
-  const JoinId join = story.world.use(prepared);
+  WorldJoin prepared = makeJoin(story.world.joinInput(panels));
+  const JoinId join = story.world.addJoin(prepared);
   EXPECT_FALSE(shows());
-  story.world.drop(join);
+  story.world.removeJoin(join);
   EXPECT_TRUE(shows());
-  const JoinId again = story.world.use(prepared);
+  const JoinId again = story.world.addJoin(prepared);
   EXPECT_FALSE(shows());
-  // A change before use() counts too.
+  // A change before addJoin() counts too.
   story.move(panels[4], boxAt({0.0, -2, -3.5}, {0.5, 4, 1}));
   EXPECT_TRUE(shows());
-  story.world.drop(again);
-  story.world.use(prepared);
+  story.world.removeJoin(again);
+  story.world.addJoin(prepared);
   EXPECT_TRUE(shows());
   story.remove(panels[3]);
   EXPECT_TRUE(shows());
   // What is not there any more, or never was, is left out.
   prepared.instances[0] = InstanceId(4711u);
-  story.world.use(prepared);
+  story.world.addJoin(prepared);
   EXPECT_TRUE(shows());
 }
 
@@ -193,14 +195,14 @@ TEST(World, AMemberThatIsAlwaysOnTheMoveHidesNothingWhereItWas) {
       const Vec3d home(0, -2, -4);
       moveTo(home + Vec3d(9, 0, 0));
       moveTo(home);
-      const WorldJoin prepared = world.prepareJoin(scene.panels);
+      const WorldJoin prepared = makeJoin(world.joinInput(scene.panels));
       if (!prepared_before) {
-        world.use(prepared);
+        world.addJoin(prepared);
         EXPECT_FALSE(showsCrate()) << in_batch;
       }
       moveTo(home + Vec3d(9, 0, 0));
       if (prepared_before) {
-        world.use(prepared);
+        world.addJoin(prepared);
       }
       EXPECT_TRUE(showsCrate()) << prepared_before << ' ' << in_batch;
     }
@@ -213,7 +215,7 @@ TEST(World, AJoinHidesNothingInViewsThatLeaveOutAGroupOfItsMembers) {
     PanelsAndCrate scene;
     World& world = scene.story.world;
     world.setGroups(scene.panels[4], 2);
-    world.use(world.prepareJoin(scene.panels, {.part_triangles = part_triangles}));
+    world.addJoin(makeJoin(world.joinInput(scene.panels), {.part_triangles = part_triangles}));
     for (const std::uint32_t groups : {1u, 2u, 3u}) {
       WorldCuller culler({.raster = {.width = 64, .height = 36}, .groups = groups});
       world.setGroups(scene.crate, 3);
@@ -233,11 +235,36 @@ TEST(World, AJoinOfAnotherWorldHidesNothing) {
   here.story.move(here.panels[4], away);
   there.story.move(there.panels[4], away);
   there.story.move(there.panels[4], home);
-  const WorldJoin prepared = there.story.world.prepareJoin(there.panels);
-  there.story.world.use(prepared);
+  const WorldJoin prepared = makeJoin(there.story.world.joinInput(there.panels));
+  there.story.world.addJoin(prepared);
   EXPECT_FALSE(there.showsCrate());
-  here.story.world.use(prepared);
+  here.story.world.addJoin(prepared);
   EXPECT_TRUE(here.showsCrate());
+}
+
+// Another thread finds the surfaces of a join while a member moves away, or only what the join is to hide.
+TEST(World, AJoinIsMadeWhileTheWorldChanges) {
+  for (const bool member_moves : {false, true}) {
+    PanelsAndCrate scene;
+    Story& story = scene.story;
+    JoinInput input = story.world.joinInput(scene.panels);
+    WorldJoin join;
+    std::thread other([&] { join = makeJoin(std::move(input)); });
+    const InstanceId passing = story.add(0, boxAt({20, 0, 0}, {1, 1, 1}));
+    for (int frame = 0; frame < 20; ++frame) {
+      story.move(passing, boxAt({20, 0, 0.125 * frame}, {1, 1, 1}));
+      story.world.tidy();
+    }
+    if (member_moves) {
+      story.move(scene.panels[4], boxAt({0.0, -2, -3.5}, {0.5, 4, 1}));
+    } else {
+      story.move(scene.crate, boxAt({-1.25, -1, -10}, {2.5, 2, 1}));
+    }
+    other.join();
+    story.world.addJoin(std::move(join));
+    story.world.addJoin(makeJoin(story.world.joinInput({})));
+    EXPECT_EQ(scene.showsCrate(), member_moves);
+  }
 }
 
 // A wall is seen from its back, which is drawn at first. The later join is as large as the first one and lies
@@ -248,14 +275,14 @@ TEST(World, AJoinMadeAnewHidesNothingByBacksThatAreNotDrawn) {
   const InstanceId wall = story.add(0, turned), crate = story.add(2, boxAt({0, 0, -20}, {1, 1, 1}));
   const View view = viewFrom({0, 0, 0}, {0, 0, -1});
   WorldCuller culler;
-  const JoinId join = story.world.use(story.world.prepareJoin(std::array{wall}));
+  const JoinId join = story.world.addJoin(makeJoin(story.world.joinInput(std::array{wall})));
   for (int frame = 0; frame < 3; ++frame) {
     culler.cull(story.world, view);
   }
   EXPECT_FALSE(keeps(culler, crate));
-  story.world.drop(join);
+  story.world.removeJoin(join);
   story.world.replace(wall, {.mesh = story.meshes[1], .world_from_mesh = turned});
-  story.world.use(story.world.prepareJoin(std::array{wall}));
+  story.world.addJoin(makeJoin(story.world.joinInput(std::array{wall})));
   for (int frame = 0; frame < 3; ++frame) {
     culler.cull(story.world, view);
     EXPECT_TRUE(keeps(culler, crate));
@@ -268,7 +295,7 @@ TEST(World, AMemberThatIsHiddenOrRemovedHidesNothing) {
     for (const std::uint32_t part_triangles : {1u, 1024u}) {
       PanelsAndCrate scene;
       World& world = scene.story.world;
-      world.use(world.prepareJoin(scene.panels, {.part_triangles = part_triangles}));
+      world.addJoin(makeJoin(world.joinInput(scene.panels), {.part_triangles = part_triangles}));
       EXPECT_FALSE(scene.showsCrate());
       EXPECT_FALSE(scene.shows(scene.small));
       if (hidden) {
@@ -441,8 +468,8 @@ TEST(World, CallsWithIdsThatAreNotThereHaveNoEffect) {
     EXPECT_FALSE(world.boundsOf(nothing).wellFormed());
     EXPECT_FALSE(world.meshOf(nothing).valid());
   }
-  world.drop(JoinId());
-  world.drop(JoinId(3u));
+  world.removeJoin(JoinId());
+  world.removeJoin(JoinId(3u));
   EXPECT_EQ(world.tombstones(SetsId(3u)), 0u);
   world.removeMesh(MeshId());
   EXPECT_TRUE(world.has(id));

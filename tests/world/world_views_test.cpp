@@ -141,8 +141,8 @@ TEST(WorldViews, FarFromTheOriginAnswersAreTheSameAroundAnotherOne) {
     }
     const std::vector<InstanceId> some{random.ids[1], random.ids[3], random.ids[5], random.ids[6]};
     far.setOrigin(away);
-    far.use(far.prepareJoin(some));
-    random.story.world.use(random.story.world.prepareJoin(some));
+    far.addJoin(makeJoin(far.joinInput(some)));
+    random.story.world.addJoin(makeJoin(random.story.world.joinInput(some)));
     WorldCuller here, there, loose;
     double heading = 0.0;
     for (int frame = 0; frame < 24; ++frame) {

@@ -41,7 +41,7 @@ class VisibleHistory {
     double seen_at = 0.0;  // time_s_ of the last update() in which it was visible
     float opacity = 0.0f;
     bool held = false;
-    std::uint64_t born = 0;  // the version of the world in which the instance was added; 0: it is not there
+    std::uint64_t born = 0;  // World::bornOf()
   };
 
   VisibleHistorySettings settings_;

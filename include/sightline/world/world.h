@@ -27,6 +27,7 @@
 #include "sightline/math/box.h"
 #include "sightline/math/mat4.h"
 #include "sightline/occluders/surface_set.h"
+#include "sightline/scene/scene.h"
 #include "sightline/world/world_mesh.h"
 
 namespace sightline {
@@ -36,8 +37,8 @@ struct WorldData;
 }
 
 // Ids of a World's meshes, instances and joins stay the same as long as these are there; after removeMesh(),
-// remove() or drop(), the next one that comes may have the same id. So forget an id together with what it
-// names.
+// remove() or removeJoin(), the next one that comes may have the same id. So forget an id together with what
+// it names; World::bornOf() tells two instances with one id apart.
 using MeshId = Id<struct MeshTag>;
 using InstanceId = Id<struct InstanceTag>;
 using JoinId = Id<struct JoinTag>;
@@ -45,8 +46,8 @@ using SetsId = Id<struct SetsTag>;  // of a World; never given again
 
 struct Instance {
   MeshId mesh{};
-  Mat4 world_from_mesh{};  // affine; it may scale, shear and mirror, which leaves fronts fronts
-  std::uint64_t mark = 0;  // the caller's own: a pointer, or the number of a draw call; see World::markOf()
+  Mat4 world_from_mesh{};       // affine; it may scale, shear and mirror, which leaves fronts fronts
+  std::uint64_t user_data = 0;  // the caller's own: a pointer, or the number of a draw call
   // Bits of the caller's choice: in views that have none of them, the instance is not drawn, so it is not
   // kept, and hides nothing (WorldCullerSettings::groups).
   std::uint32_t groups = 1;
@@ -60,7 +61,7 @@ struct Instance {
   double displacement = 0.0;
 };
 
-// What World::prepareJoin() found, for World::use(). Not to be changed by hand.
+// What makeJoin() found, for World::addJoin(). Not to be changed by hand.
 struct WorldJoin {
   std::vector<InstanceId> instances{};
   std::vector<std::uint64_t> versions{};  // of the instances
@@ -72,6 +73,17 @@ struct WorldJoin {
   // up to 2^-24 of the distance from `origin`.
   double rounding = 0.0;
 };
+
+// What World::joinInput() copied, for makeJoin(). Not to be changed by hand.
+struct JoinInput {
+  WorldJoin join{};  // without its surfaces
+  Scene scene{};     // their triangles, from WorldJoin::origin; its objects are the instances
+};
+
+// Finds the surfaces of instances anew as one, so that what touches hides jointly. Takes as long as
+// findSurfaces(), on any thread, while the World changes: it reads the input alone.
+WorldJoin makeJoin(JoinInput input, const SurfaceSettings& settings = {},
+                   const ParallelFor& parallel_for = serialFor);
 
 // Matrices and eyes are in double precision, in world space. Boxes are in single precision, relative to
 // origin(), which moves with the camera where the world is large. The axes may be any: nothing depends on
@@ -100,8 +112,9 @@ class World {
   // Takes about a microsecond. An instance with a matrix that is not finite, or of a mesh that is not there,
   // is in every answer while it is shown.
   InstanceId add(const Instance& instance);
-  // Adds many and appends their ids. Afterwards the hierarchy is as one that is built for all that is there.
-  // Takes n log n time.
+  // Adds many and appends their ids. Where they are at least an eighth of those that rest, the hierarchy is
+  // built anew for all that rests, in n log n time; fewer are added to it one by one. The same holds for
+  // those that move (Instance::moves), in a hierarchy of their own.
   void add(std::span<const Instance> instances, std::vector<InstanceId>& ids);
   void remove(InstanceId instance);
   // Puts another instance in the place of one, which gets the same id: another mesh, as of another level of
@@ -128,28 +141,34 @@ class World {
   // The same at once, as behind a loading screen. Takes some 120 nanoseconds an instance.
   void setOrigin(const Vec3d& origin);
 
+  // Whether an instance has this id: perhaps not the one that had it before.
   bool has(InstanceId instance) const;
+  // A number that no other instance of this World has or had; replace() makes another instance, too. Note it
+  // with an id to find out later whether the id has been given again. 0 if it is not there.
+  std::uint64_t bornOf(InstanceId instance) const;
   std::size_t instances() const;  // that are there
   // All ids are below this: the size of an array by InstanceId.
   std::size_t idBound() const;
   Box boundsOf(InstanceId instance) const;  // from origin(), rounded outwards; not well formed if unknown
+  // A box of what is no instance, given by its corners in world space, as one to classify or to look at: from
+  // origin(), rounded outwards. Right until origin() becomes another one.
+  Box boxFromOrigin(const Vec3d& min_world, const Vec3d& max_world) const;
   MeshId meshOf(InstanceId instance) const;
-  std::uint64_t markOf(InstanceId instance) const;  // 0 if it is not there
+  std::uint64_t userDataOf(InstanceId instance) const;  // 0 if it is not there
 
-  // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
-  // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
-  // it. Positions are rounded to single precision, relative to the middle of the join
-  // (WorldJoin::rounding), and touch where they are equal then. Where rounding could be seen
-  // (WorldCullerSettings::join_rounding), members hide by their own meshes. One that moves, is hidden or is
-  // removed later leaves the join; what was connected with it then hides by its own mesh, too. Takes as long
-  // as findSurfaces(), during which the world may be culled but not changed; use() takes microseconds.
-  WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
-                        const ParallelFor& parallel_for = serialFor) const;
-  // Instances that have changed since prepareJoin() leave the join at once, and all if that was of another
-  // World, such as the last level's.
-  JoinId use(WorldJoin join);
+  // Copies the triangles of instances for makeJoin(), by which what touches hides jointly: walls of panels,
+  // floors of tiles, a level of brushes. Worth it for what does not move. Positions are rounded to single
+  // precision, relative to the middle of the join (WorldJoin::rounding), and touch where they are equal then.
+  // Takes some nanoseconds a triangle.
+  JoinInput joinInput(std::span<const InstanceId> instances) const;
+  // Takes microseconds. Instances that are in another join leave it. Those that have changed since
+  // joinInput() leave this one at once, and all if that was of another World, such as the last level's. One
+  // that moves, is hidden or is removed later leaves it, too; what was connected with it then hides by its
+  // own mesh. Where rounding could be seen (WorldCullerSettings::join_rounding), members hide by their own
+  // meshes.
+  JoinId addJoin(WorldJoin join);
   // Its instances hide by their own meshes again.
-  void drop(JoinId join);
+  void removeJoin(JoinId join);
 
   // Says which instances a baked scene's objects are, so that WorldCuller::useSets() can leave out what its
   // sets say cannot be seen. objects: by ObjectId of the baked scene; not valid where an object is not there.
@@ -177,9 +196,9 @@ class World {
   // what came. Where the look-up is told that some are closed (SetQuery::setClosedDoors), it is for the
   // caller to see to that these are there and shown, stand where they were baked, are as opaque as they were
   // then, and belong to all groups that are culled.
-  SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {},
+  SetsId addSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {},
                  std::span<const ObjectId> doors = {});
-  void dropSets(SetsId sets);
+  void removeSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
   // Call this once a frame, before culling: keeps the hierarchy good, in at most about so many steps of some
@@ -196,7 +215,6 @@ class World {
   friend class WorldCuller;
   friend class WorldSight;
   friend class ShadowCasters;
-  friend class VisibleHistory;
   std::unique_ptr<world::WorldData> data_;
 };
 

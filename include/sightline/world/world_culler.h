@@ -50,7 +50,7 @@ struct WorldCullStats {
 // Culls a World for one view, frame after frame. Each view of a frame (the camera's, cascades of shadows,
 // reflections) has a culler of its own, and several cullers may cull one world at the same time.
 //
-// Conservative: whatever can be seen is kept. One exception, only with joins (World::prepareJoin): see
+// Conservative: whatever can be seen is kept. One exception, only with joins (makeJoin()): see
 // WorldCullerSettings::join_rounding; 0 removes it. What hides is what hid something or was kept in the frame
 // before, and what is found not to be hidden in this one, each as far as it is there and where it is now,
 // never where it was.
@@ -77,9 +77,9 @@ class WorldCuller {
   // side of this plane, in world space, is drawn. It is not kept, and hides nothing. Holds for all views from
   // the next cull() on; Plane() ends it.
   void setClipPlane(const Plane& plane);
-  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use, at
+  // Leaves out what these sets say cannot be seen; see World::addSets(). The sets must outlive their use, at
   // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
-  // Sets of other boxes than World::useSets() was given leave nothing out; finding that takes time as the
+  // Sets of other boxes than World::addSets() was given leave nothing out; finding that takes time as the
   // number of boxes, in this call.
   void useSets(SetsId id, VisibleSets* sets);
 
@@ -102,7 +102,8 @@ class WorldCuller {
 
   // Whether a box of something that is no instance may be seen in one of the views: kHidden also means
   // outside of them. Every box may be seen before the first cull(), after reset(), and in a view that is not
-  // usable. box_from_origin: world space less World::origin(), as World::boundsOf() gives it.
+  // usable. box_from_origin: world space less World::origin(), as World::boundsOf() gives it, and
+  // World::boxFromOrigin() for what is no instance.
   // Several threads may ask at the same time.
   Visibility classify(const Box& box_from_origin) const;
 

@@ -36,8 +36,8 @@ class WorldSight {
   WorldSight& operator=(WorldSight&&) noexcept;
 
   // The point and the box are in different spaces. from_world: world space. box_from_origin: world space less
-  // World::origin(), as World::boundsOf() gives it. ignored: these hide nothing, as the one who looks and
-  // what is looked for.
+  // World::origin(), as World::boundsOf() gives it, and World::boxFromOrigin() for what is no instance.
+  // ignored: these hide nothing, as the one who looks and what is looked for.
   Visibility look(const World& world, const Vec3d& from_world, const Box& box_from_origin,
                   std::span<const InstanceId> ignored = {});
 
