@@ -40,11 +40,18 @@ void widen(View& view, double by) {
   view.aspect = width / height;
 }
 
+// See CameraMotion::depth.
+double usualDepth(const View& view) {
+  constexpr double kLeastNear = 0.01, kWithoutEnd = 10.0;  // metres
+  return std::isfinite(view.z_far) ? std::sqrt(std::max(view.z_near, kLeastNear) * view.z_far) : kWithoutEnd;
+}
+
 }  // namespace
 
 void viewsAhead(const View& view, const CameraMotion& motion, double seconds, std::span<View> views) {
   const double rate = length(motion.turn_rad_per_s);
   const Vec3d axis = normalized(motion.turn_rad_per_s);
+  const double depth = motion.depth > 0.0 ? motion.depth : usualDepth(view);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const double step = seconds / static_cast<double>(views.size());
     const double time = step * static_cast<double>(i + 1);
@@ -61,8 +68,6 @@ void viewsAhead(const View& view, const CameraMotion& motion, double seconds, st
       continue;
     }
     // What is at the side of the frustum moves across it by what the eye may be off.
-    const double depth =
-        std::isfinite(view.z_far) ? std::sqrt(std::max(view.z_near, 0.01) * view.z_far) : 10.0;
     widen(ahead, rate * step + std::atan(motion.spread * time / depth));
   }
 }

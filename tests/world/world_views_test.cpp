@@ -367,6 +367,26 @@ TEST(WorldViews, AViewAheadHasWhatTheCameraTurnsTo) {
   viewsAhead(view, {}, 0.5, {});
 }
 
+// Half a metre to the side is an angle of 1/20 ten metres away.
+TEST(WorldViews, AViewAheadIsWiderByWhatTheSpreadIsAtADepth) {
+  View view = viewFrom({0, 0, 0}, {0, 0, -1});
+  const auto widerBy = [&](double depth) {
+    std::array<View, 1> views;
+    viewsAhead(view, {.spread = 1.0, .depth = depth}, 0.5, views);
+    return std::atan(views[0].tan_half_fovy) - std::atan(view.tan_half_fovy);
+  };
+  EXPECT_NEAR(widerBy(10.0), std::atan(0.05), 1e-12);
+  EXPECT_NEAR(widerBy(50.0), std::atan(0.01), 1e-12);
+  view.z_near = 0.25;
+  view.z_far = 400.0;
+  EXPECT_NEAR(widerBy(0.0), std::atan(0.05), 1e-12);
+  view.z_near = 1e-9;
+  view.z_far = 1e4;
+  EXPECT_NEAR(widerBy(0.0), std::atan(0.05), 1e-12);
+  view.z_far = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(widerBy(0.0), std::atan(0.05), 1e-12);
+}
+
 // The axis of an off-centre view is nearer to one border, or outside of both, as in a tile of a large
 // display.
 TEST(WorldViews, AViewAheadIsWiderToAllSidesHoweverItIsShifted) {

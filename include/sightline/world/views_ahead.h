@@ -12,11 +12,15 @@ struct CameraMotion {
   Vec3d velocity{};        // metres a second, world space
   Vec3d turn_rad_per_s{};  // about this axis, counter-clockwise as seen from its tip
   double spread = 0.0;     // metres a second by which the velocity may be another one
+  // Metres: how far away that is which `spread` moves across the view. 0: the geometric mean of the view's
+  // near and far planes, where a near plane within 1 cm counts as at 1 cm; 10 m if the far one is infinite.
+  // Has no effect on orthographic views.
+  double depth = 0.0;
 };
 
 // Sets the views to those that the camera will have within `seconds`, evenly spaced, the last one at their
-// end. Each is wide enough for what the camera turns until the next one, and for `seconds` of `spread` at the
-// middle of the depths in view; more than about 75 degrees to a side are not taken in.
+// end. Each is wide enough for what the camera turns until the next one, and for `seconds` of `spread` at
+// `depth`; more than about 75 degrees to a side are not taken in.
 //
 //   std::array<View, 3> views;
 //   viewsAhead(view, {.velocity = velocity, .turn_rad_per_s = turn}, 0.5, views);
