@@ -366,6 +366,31 @@ TEST_F(LayerReuseTest, ObjectsThatHaveTurnedAreDrawnAnew) {
   }
 }
 
+// Turns about the line of sight move the picture exactly as a warp does; its shading turns with it.
+TEST_F(LayerReuseTest, AnObjectsScaleDoesNotChangeHowFarItMayTurn) {
+  for (const Vec3d& scale : {Vec3d(1, 1, 1), Vec3d(0.001, 0.001, 0.001), Vec3d(100, 100, 100),
+                             Vec3d(0.001, 0.001, 100), Vec3d(1, 1, 0)}) {
+    SCOPED_TRACE(scale.x);
+    SceneMaker stored;
+    const Vec3f half(static_cast<float>(1.0 / scale.x), static_cast<float>(1.0 / scale.y),
+                     static_cast<float>(scale.z > 0.0 ? 1.0 / scale.z : 1.0));
+    stored.box(half * -1.0f, half, kRed);
+    const auto placed = [&](double angle) {
+      Mat4 m;
+      m(0, 0) = std::cos(angle) * scale.x;
+      m(1, 0) = std::sin(angle) * scale.x;
+      m(0, 1) = -std::sin(angle) * scale.y;
+      m(1, 1) = std::cos(angle) * scale.y;
+      m(2, 2) = scale.z;
+      return m;
+    };
+    Reused reused(stored.scene, {.tolerance_px = 1.0, .max_turn = 0.1});
+    EXPECT_TRUE(reused.drawFrame(testView(), {placed(0.0)}, ids({0})));
+    EXPECT_FALSE(reused.drawFrame(testView(), {placed(0.05)}, ids({0})));
+    EXPECT_TRUE(reused.drawFrame(testView(), {placed(3.1)}, ids({0})));
+  }
+}
+
 TEST_F(LayerReuseTest, ImagesAreNotStretchedFurtherThanAllowed) {
   maker.wall(0.0, 1.0, kRed);
   Reused reused(maker.scene, {.tolerance_px = 0.5, .max_stretch = 1.25});

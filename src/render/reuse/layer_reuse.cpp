@@ -33,13 +33,15 @@ bool areEqual(const View& a, const View& b) {
          a.aspect == b.aspect && a.shift_x == b.shift_x && a.shift_y == b.shift_y;
 }
 
-// How far an object has turned between two transforms, about in radians; growing and shrinking count too.
+// How far an object has turned between two transforms, about in radians; growing and shrinking count too. The
+// object's own scale does not count: each of its axes is compared in proportion to its length. NaN where
+// these lengths cannot be computed.
 double turnBetween(const Mat4& a, const Mat4& b) {
   double sum = 0.0;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      const double difference = a(row, column) - b(row, column);
-      sum += difference * difference;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3d from(a(0, axis), a(1, axis), a(2, axis)), to(b(0, axis), b(1, axis), b(2, axis));
+    if (!(from == to)) {
+      sum += 2.0 * dot(to - from, to - from) / (dot(from, from) + dot(to, to));
     }
   }
   return std::sqrt(0.5 * sum);  // 2 sin(t / 2) for a turn by t
