@@ -163,6 +163,41 @@ TEST(IncrementalSort, HaltsOnAHundredThousandSmallGraphs) {
   }
 }
 
+// Answers for candidates alone; what it says of groups and pairs is OccluderSource's.
+class CandidateSource : public OccluderSource {
+ public:
+  explicit CandidateSource(GraphSource& graph) : graph_(graph) {}
+  void candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) override {
+    graph_.candidatesOf(part, candidates);
+  }
+  bool candidateOccludes(std::uint32_t candidate, std::uint32_t part) override {
+    return graph_.candidateOccludes(candidate, part);
+  }
+  void setActive(std::uint32_t part, bool active) override { graph_.setActive(part, active); }
+
+ private:
+  GraphSource& graph_;
+};
+
+TEST(IncrementalSort, TheOrderIsTheSameWhereASourceKnowsNothingButCandidates) {
+  IncrementalSort sorter;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const std::size_t parts = 1 + below(40, random);
+    GraphSource graph = variedGraph(seed, parts, random);
+    CandidateSource candidates(graph);
+    const std::vector<std::uint32_t> previous = shuffledOrder(parts, random);
+    GroupedOrder order, other;
+    graph.reset();
+    sorter.sort(previous, graph, order);
+    graph.reset();
+    sorter.sort(previous, candidates, other);
+    EXPECT_EQ(order.parts, other.parts);
+    EXPECT_EQ(order.first_of, other.first_of);
+  }
+}
+
 TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCyclesAreSortedFromAnyOrder) {
   IncrementalSort sorter;
   const std::uint32_t parts = 40;

@@ -61,11 +61,11 @@ void IncrementalSort::prepare(std::span<const std::uint32_t> previous, GroupedOr
 
 // One iteration of the loop in Figure 4 for the first object, which has been removed from the list.
 void IncrementalSort::step(std::uint32_t object, OccluderSource& source, GroupedOrder& order) {
-  setActive(object, false, source);
   prefix_.clear();
   if (marked(object) && groupCycle(object, source)) {
     return;
   }
+  setActive(object, false, source);
   placeByOccluders(object, source, order);
 }
 
@@ -87,7 +87,7 @@ bool IncrementalSort::groupCycle(std::uint32_t object, OccluderSource& source) {
     }
     cycle_.assign(prefix_.begin(), prefix_.end());
   }
-  group(object, source);
+  group(object);
   return true;
 }
 
@@ -153,8 +153,7 @@ bool IncrementalSort::detectCycle(OccluderSource& source) {
 
 // Makes one object of cycle_ and puts it, unmarked, at the front. `object` is not in the list and need not be
 // in the cycle.
-void IncrementalSort::group(std::uint32_t object, OccluderSource& source) {
-  setActive(object, true, source);
+void IncrementalSort::group(std::uint32_t object) {
   list_.insertFirst(object);
   const std::uint32_t name = cycle_.front();
   list_.remove(name);

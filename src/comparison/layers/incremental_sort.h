@@ -54,7 +54,7 @@ class IncrementalSort final : public LayerSortAlgorithm {
   void placeByOccluders(std::uint32_t object, OccluderSource& source, GroupedOrder& order);
   void formMarkedPrefix(std::uint32_t object);
   bool detectCycle(OccluderSource& source);
-  void group(std::uint32_t object, OccluderSource& source);
+  void group(std::uint32_t object);
   void emit(GroupedOrder& order);
   bool occludes(std::uint32_t front, std::uint32_t back, OccluderSource& source) const;
   void setActive(std::uint32_t object, bool active, OccluderSource& source) const;

@@ -20,7 +20,6 @@ class ArcSource : public OccluderSource {
   // parts: those to be sorted. arcs: ascending.
   void begin(std::size_t numbers, std::span<const std::uint32_t> parts, std::span<const LayerArc> arcs) {
     active_.assign(numbers, 0);
-    in_group_.assign(numbers, 0);
     for (const std::uint32_t part : parts) {
       active_[part] = 1;
     }
@@ -43,24 +42,6 @@ class ArcSource : public OccluderSource {
     }
   }
   bool candidateOccludes(std::uint32_t, std::uint32_t) override { return true; }
-  void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override {
-    const auto begin = static_cast<std::ptrdiff_t>(occluders.size());
-    for (const std::uint32_t part : group) {
-      in_group_[part] = 1;
-      candidatesOf(part, occluders);
-    }
-    occluders.erase(std::remove_if(occluders.begin() + begin, occluders.end(),
-                                   [&](std::uint32_t part) { return in_group_[part] != 0; }),
-                    occluders.end());
-    std::sort(occluders.begin() + begin, occluders.end());
-    occluders.erase(std::unique(occluders.begin() + begin, occluders.end()), occluders.end());
-    for (const std::uint32_t part : group) {
-      in_group_[part] = 0;
-    }
-  }
-  bool occludes(std::uint32_t front, std::uint32_t back) override {
-    return std::binary_search(by_back_.begin(), by_back_.end(), BackArc{back, front});
-  }
   void setActive(std::uint32_t part, bool active) override { active_[part] = active ? 1 : 0; }
 
  private:
@@ -71,7 +52,6 @@ class ArcSource : public OccluderSource {
   };
   std::vector<BackArc> by_back_;  // ascending
   std::vector<std::uint8_t> active_;
-  std::vector<std::uint8_t> in_group_;  // all 0 between calls
 };
 
 }  // namespace

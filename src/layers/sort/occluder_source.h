@@ -16,13 +16,16 @@ class OccluderSource {
   // cost little; whether a candidate occludes the part is for candidateOccludes() to say.
   virtual void candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) = 0;
   virtual bool candidateOccludes(std::uint32_t candidate, std::uint32_t part) = 0;
-  // Appends the active parts that occlude at least one part of the group, each once and ascending, without
-  // the group's own parts.
-  virtual void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) = 0;
-  // Whether `front` occludes `back`, whether they are active or not.
-  virtual bool occludes(std::uint32_t front, std::uint32_t back) = 0;
   // Parts are active until they are put into the order.
   virtual void setActive(std::uint32_t part, bool active) = 0;
+
+  // What follows comes of candidatesOf() and candidateOccludes() by default. Sources may have faster answers.
+  //
+  // Appends the active parts that occlude at least one part of the group, each once and ascending, without
+  // the group's own parts.
+  virtual void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders);
+  // Whether `front`, which is active, occludes `back`.
+  virtual bool occludes(std::uint32_t front, std::uint32_t back);
 };
 
 // `front` occludes `back`.
