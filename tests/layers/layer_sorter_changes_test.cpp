@@ -119,7 +119,7 @@ TEST(LayerSorterChanges, PartsThatComeGoAndChangeShapeAreSortedAsIfTheyHadAlways
         LayerSettings settings;
         settings.sort = sortOf(sort);
         settings.search = searchOf(search);
-        settings.conditioning_axis = -1;
+        settings.conditioning = false;
         if (world) {
           settings.extents = worldExtents();
         }

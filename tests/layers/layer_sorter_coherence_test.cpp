@@ -34,7 +34,7 @@ MadeScene cubesAt(const std::vector<Vec3d>& centres, const Vec3d& eye) {
 LayerSettings unconditioned(SortChoice sort) {
   LayerSettings settings;
   settings.sort = sortOf(sort);
-  settings.conditioning_axis = -1;
+  settings.conditioning = false;
   return settings;
 }
 
@@ -132,7 +132,7 @@ TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrd
     LayerSorter plain = sorterOf(cubesAt(at, kLeft), settings);
     ASSERT_EQ(partsOf(plain.update(viewFrom(kLeft))), byDistance(at, kLeft));
     ASSERT_NE(byDistance(at, kLeft), by_depth);
-    settings.conditioning_axis = 2;
+    settings.conditioning = true;
     LayerSorter sorter = sorterOf(cubesAt(at, kLeft), settings);
     const LayerOrder& first = sorter.update(viewFrom(kLeft));
     EXPECT_EQ(partsOf(first), by_depth);
@@ -141,6 +141,22 @@ TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrd
     const LayerOrder& second = sorter.update(viewFrom(kRight));
     EXPECT_EQ(partsOf(second), by_depth);
     EXPECT_EQ(second.stats.conditioned, 0u);
+  }
+}
+
+TEST(LayerSorterCoherence, TheAxisOfConditioningIsTheCamerasOwnWhereverItStands) {
+  const std::vector<Vec3d> at{{20, 0, -3}, {0, 0, 9}, {40, 0, -6}, {10, 0, 3}, {30, 0, 6}};
+  const std::vector<ExtentAxis> camera = cameraExtents(), world = worldExtents();
+  const std::vector<std::vector<ExtentAxis>> with_depth{
+      camera, {camera[2], camera[0], camera[1]}, {world[2], camera[0], camera[2]}};
+  for (const std::vector<ExtentAxis>& extents : with_depth) {
+    LayerSorter sorter = sorterOf(cubesAt(at, kLeft), {.extents = extents});
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kLeft))), (std::vector<std::uint32_t>{1, 4, 3, 0, 2}));
+  }
+  const std::vector<std::vector<ExtentAxis>> without{world, {camera[0], camera[1]}, {}};
+  for (const std::vector<ExtentAxis>& extents : without) {
+    LayerSorter sorter = sorterOf(cubesAt(at, kLeft), {.extents = extents});
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kLeft))), byDistance(at, kLeft));
   }
 }
 

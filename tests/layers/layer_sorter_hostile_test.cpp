@@ -82,7 +82,7 @@ TEST(HostileSorter, AnOrthographicViewLooksAtRightAnglesToRightAndUp) {
 TEST(HostileSorter, AxesThatSpanNoPlaneRuleNothingOut) {
   for (const Vec3d& direction : {Vec3d(1, 1, 1), Vec3d(-2, -2, -2), Vec3d(0, 0, 0), Vec3d(1e-300, 0, 0)}) {
     LayerSettings settings;
-    settings.conditioning_axis = -1;
+    settings.conditioning = false;
     settings.extents = {{ExtentAxis::Kind::kAngular, ExtentAxis::Frame::kWorld, direction, {1, 1, 1}},
                         {ExtentAxis::Kind::kSpatial, ExtentAxis::Frame::kWorld, direction * 0.0}};
     LayerSorter sorter = two(cube(), 100.0, settings);

@@ -278,7 +278,7 @@ TEST(LayerSorterRules, SettingsOutOfRangeAreMadeUsable) {
   Random random(4);
   const MadeScene scene = randomScene(random, 8, 6);
   const Truth truth = truthOf(scene);
-  for (const int conditioning_axis : {-7, -1, 0, 1, 2, 3, 16, 1000}) {
+  for (const std::uint32_t conditioning_axis : {0u, 1u, 2u, 3u, 16u, 1000u, 0xffffffffu}) {
     for (const std::size_t axes : {0u, 1u, 3u, 16u, 17u, 40u}) {
       SCOPED_TRACE(::testing::Message() << axes << " axes, conditioned along " << conditioning_axis);
       LayerSettings settings;

@@ -27,7 +27,8 @@ void expectSameInAllFrames(const MovingScene& scene, const std::vector<ExtentAxi
       one.search = searchOf(search, {.rebuild_after = 20});
       one.extents = extents;
       one.arcs = all_arcs ? LayerArcs::kAll : LayerArcs::kWithinGroups;
-      one.conditioning_axis = sort == SortChoice::kIncremental && search == SearchChoice::kTree ? -1 : 2;
+      one.conditioning = sort != SortChoice::kIncremental || search != SearchChoice::kTree;
+      one.conditioning_axis = 2;
       sorters.emplace_back(scene, one);
       settings.push_back(one);
     }

@@ -262,7 +262,8 @@ inline std::vector<Way> allWays(bool all_arcs, const ExtentTreeSettings& tree = 
                            : extents == 1 ? worldExtents()
                            : extents == 2 ? mixed
                                           : std::vector<ExtentAxis>{};
-        settings.conditioning_axis = extents == 0 && sort == SortChoice::kIncremental ? -1 : 2;
+        settings.conditioning = extents != 0 || sort != SortChoice::kIncremental;
+        settings.conditioning_axis = 2;
         ways.push_back(
             {std::string(nameOf(sort)) + ", " + nameOf(search) + ", extents " + std::to_string(extents),
              settings});

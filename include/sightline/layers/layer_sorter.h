@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,9 +58,12 @@ struct LayerSettings {
   MakeLayerSort sort{};  // empty: strongly connected components by depth-first search
   std::vector<ExtentAxis> extents = cameraExtents();  // at most kMaxExtentAxes
   MakeCandidateSearch search{};                       // empty: a scan that compares many parts at a time
-  // Index of the spatial axis of `extents` by which groups are moved forward after the sort, past groups that
-  // lie farther and do not occlude them; -1: none. This keeps the order near the one that later frames need.
-  int conditioning_axis = 2;
+  // Moves groups forward after the sort, past groups that lie farther and do not occlude them. This keeps the
+  // order near the one that later frames need.
+  bool conditioning = true;
+  // The index in `extents` of the spatial axis along which "farther" is measured. None given: the first one
+  // with Frame::kCamera. Where there is no such axis, groups stay where they are.
+  std::optional<std::uint32_t> conditioning_axis{};
   bool exact = true;  // false: parts whose extents overlap count as occluding, which makes groups larger
   LayerArcs arcs = LayerArcs::kWithinGroups;
   // true: sorted parts that are surely outside the view are left out of the order. It then holds for the view

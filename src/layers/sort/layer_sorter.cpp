@@ -39,6 +39,19 @@ enum Listed : std::uint8_t {
   kWasListed,  // a removed part of this number is in the list
 };
 
+// The axis by which groups are conditioned, if they are.
+std::optional<std::uint32_t> conditioningAxisOf(const LayerSettings& settings) {
+  const std::vector<ExtentAxis>& axes = settings.extents;
+  for (std::uint32_t i = 0; i < axes.size() && settings.conditioning; ++i) {
+    if (axes[i].kind == ExtentAxis::Kind::kSpatial &&
+        (settings.conditioning_axis ? i == *settings.conditioning_axis
+                                    : axes[i].frame == ExtentAxis::Frame::kCamera)) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
 LayerSettings checked(LayerSettings settings) {
   if (settings.extents.size() > kMaxExtentAxes) {
     settings.extents.resize(kMaxExtentAxes);
@@ -46,11 +59,7 @@ LayerSettings checked(LayerSettings settings) {
   if (!(settings.contact_tolerance > 0.0) || !std::isfinite(settings.contact_tolerance)) {
     settings.contact_tolerance = 0.0;
   }
-  const auto axis = static_cast<std::size_t>(settings.conditioning_axis);
-  if (settings.conditioning_axis < 0 || axis >= settings.extents.size() ||
-      settings.extents[axis].kind != ExtentAxis::Kind::kSpatial) {
-    settings.conditioning_axis = -1;
-  }
+  settings.conditioning_axis = conditioningAxisOf(settings);
   return settings;
 }
 
@@ -443,10 +452,10 @@ void LayerSorter::Impl::sort() {
 // Conditions the order by each group's mean distance from the eye along the axis.
 void LayerSorter::Impl::condition() {
   conditioned = 0;
-  if (settings.conditioning_axis < 0) {
+  if (!settings.conditioning_axis) {
     return;
   }
-  const auto axis = static_cast<std::size_t>(settings.conditioning_axis);
+  const std::size_t axis = *settings.conditioning_axis;
   distances.resize(store.parts());
   group_distances.clear();
   for (std::size_t i = 0; i < order.groups(); ++i) {

@@ -69,10 +69,7 @@ LayerSettings settingsOf(const LayerSortOptions& options, bool all_arcs) {
   settings.frustum_culling = valueOf(kSwitch, options.frustum_culling);
   settings.contact_tolerance = options.contact_tolerance;
   settings.arcs = all_arcs ? LayerArcs::kAll : valueOf(kArcs, options.arcs);
-  // None of the world's axes measures the distance from the camera.
-  if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
-    settings.conditioning_axis = -1;
-  }
+  settings.conditioning = valueOf(kSwitch, options.conditioning);
   return settings;
 }
 

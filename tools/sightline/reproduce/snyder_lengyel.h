@@ -22,7 +22,7 @@ LayerTotals sortFrames(
 
 // The paper's sorting of the canyon: three orthogonal extents of the world.
 inline LayerSettings canyonSorting() {
-  return {.extents = worldExtents(), .conditioning_axis = -1};
+  return {.extents = worldExtents()};
 }
 
 struct SortingTables {
