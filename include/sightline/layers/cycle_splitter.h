@@ -30,12 +30,15 @@ struct PieceSide {
   friend bool operator==(const PieceSide&, const PieceSide&) = default;
 };
 
+// The largest number of sides of one piece, for CycleSplitter and for all that draws pieces.
+inline constexpr std::uint32_t kMaxPieceSides = 16;
+
 // The part of `part` on all of these sides. The pieces of a part have no point in common, and together are
 // the part.
 struct PartPiece {
-  PartId piece{};  // its number in the order
-  PartId part{};   // which is disabled meanwhile, and not in the order
-  std::vector<PieceSide> sides{};
+  PartId piece{};                  // its number in the order
+  PartId part{};                   // which is disabled meanwhile, and not in the order
+  std::vector<PieceSide> sides{};  // at most kMaxPieceSides
 };
 
 // Appends the triangles of a part, in its space, which all lie in its hulls.

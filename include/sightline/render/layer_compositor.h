@@ -63,13 +63,12 @@ struct CompositeStats {
 };
 
 // Composites frames whose part i is object i of the renderer's scene, or one of its pieces
-// (LayerRenderer::setPieces). Holds the images of one group at a
-// time. For one thread at a time.
+// (LayerRenderer::setPieces). Holds the images of one group at a time. For one thread at a time.
 class LayerCompositor {
  public:
   // scene is the one that the renderer was made of; what is needed of its materials and shapes is copied. The
   // renderer must not be moved and must outlive this. Takes time proportional to the square of each blended
-  // mesh's triangles.
+  // mesh's triangles, up to 8192 of them; larger meshes count as ones that may overlap themselves.
   LayerCompositor(const SceneView& scene, LayerRenderer& renderer);
   ~LayerCompositor();
   LayerCompositor(LayerCompositor&&) noexcept;

@@ -45,7 +45,6 @@ struct ObjectPiece {
   ObjectId piece{}, object{};
   std::vector<PieceSide> sides{};  // planes in scene space, at most kMaxPieceSides; more are ignored
 };
-inline constexpr std::size_t kMaxPieceSides = 16;
 
 struct LayerDraw {
   // Composites blended surfaces in the order of depth, pixel by pixel, however many lie over each other;
@@ -53,7 +52,7 @@ struct LayerDraw {
   // Otherwise they are drawn over the opaque ones in the order of the objects' ids and triangles.
   bool peel = false;
   // Without peeling, draws the objects of each pass (opaque, alpha-tested, blended) in the order in which
-  // they are given, not by their ids.
+  // they are given, not by their ids. Pieces come after all whole objects, in the order of their numbers.
   bool as_given = false;
   // Also fills LayerImage::depths with the depth of the nearest surface, opaque or not. Depths err by a few
   // units in the last place; in orthographic views by as much of the far distance, and where that is
@@ -67,8 +66,8 @@ struct LayerDraw {
 
 struct LayerDrawStats {
   std::uint64_t triangles = 0;  // sent to OpenGL in all passes
-  std::uint32_t passes =
-      0;  // 1, or the number of peels (at least 1): the largest number of depths at a sample
+  // 1, or the number of peels (at least 1): the largest number of depths at a sample.
+  std::uint32_t passes = 0;
 };
 
 // Owns an OpenGL context and the scene's triangles in it. Movable. Used by one thread at a time; the caller's

@@ -21,7 +21,6 @@ using namespace layers;
 
 namespace {
 
-constexpr std::uint32_t kMaxSides = 16;  // planes around a piece, at most
 constexpr std::uint32_t kLooks = 4;  // divisions that are looked at in a frame, whether they are superfluous
 // Two halves in one group only make it larger. They are kept for keep_frames divided by this.
 constexpr std::uint32_t kInVainShare = 4;
@@ -142,9 +141,9 @@ CycleMember CycleSplitter::Impl::memberOf(PartId part) const {
   if (node != PieceTrees::kNone) {
     member.is_piece = true;
     member.weight = trees[node].weight;
-    member.cuts_left = kMaxSides - trees[node].depth;
+    member.cuts_left = kMaxPieceSides - trees[node].depth;
   } else {
-    member.cuts_left = kMaxSides;
+    member.cuts_left = kMaxPieceSides;
   }
   if (!mayDivide(wholeOf(part)) || !isFinite(member.placement)) {
     member.cuts_left = 0;

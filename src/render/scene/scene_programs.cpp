@@ -107,9 +107,9 @@ void useProgram(const SceneProgram& program, const View& view, float haze, float
 void setSides(const SceneProgram& program, const View& view, const LensPoint& lens,
               std::span<const PieceSide> sides) {
   const Vec3d eye = view.eye + lensOffset(view, lens);
-  std::array<float, 4 * kMaxPieceSides> cuts{};
+  std::array<float, std::size_t{4} * kMaxPieceSides> cuts{};
   GLint fronts = 0;
-  const std::size_t count = std::min(sides.size(), kMaxPieceSides);
+  const std::size_t count = std::min<std::size_t>(sides.size(), kMaxPieceSides);
   for (std::size_t i = 0; i < count; ++i) {
     const Plane& plane = sides[i].plane;
     for (int axis = 0; axis < 3; ++axis) {

@@ -6,6 +6,8 @@
 // low), so that surfaces near the eye keep the stored precision wherever the scene lies. Depth runs from 1 at
 // the near plane to 0 at the far plane, which spends a float's precision evenly over distance.
 
+#include "sightline/layers/cycle_splitter.h"
+
 namespace sightline::render {
 
 // Each corner of an object is one vertex. Colours come from a buffer with one entry for each object, as
@@ -95,6 +97,7 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
 // that needs their neighbours. The pieces on both sides of a plane may be drawn by different programs.
 // `precise` makes all of them compute positions and heights by the same operations, so that each fragment is
 // in exactly one piece. Positions are relative to the eye.
+static_assert(kMaxPieceSides == 16, "the size of cuts[]");
 #define SIGHTLINE_CUT                                                    \
   "uniform int cut_count, cut_fronts;\n"                                 \
   "uniform vec4 cuts[16];\n"                                             \
@@ -157,8 +160,6 @@ inline constexpr const char* kPeelColorFragment =
 #undef SIGHTLINE_BEHIND
 #undef SIGHTLINE_CUT
 #undef SIGHTLINE_SHADE
-
-inline constexpr const char* kNoColorFragment = "#version 430 core\nvoid main() {}\n";
 
 // Resolves the samples of a pixel: the mean of the colours and the nearest (greatest) depth. The caller puts
 // the version and "const int samples = ...;" before this text.
