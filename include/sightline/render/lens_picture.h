@@ -25,11 +25,11 @@
 namespace sightline {
 
 enum class LensMethod : std::uint8_t {
-  // One picture of everything, blurred by depth. It lacks what is hidden. Pixels are divided by the opacity
-  // that arrives
-  // (Potmesil), or left as it arrives, dark where little does (Rokita).
+  // One picture of everything, each pixel spread by its depth. It lacks what is hidden. What arrives at a
+  // pixel is divided by the opacity that arrives there (Potmesil).
   kSingleNormalised,
-  kSingleSpread,
+  // The same, left as it arrives: dark where little does (Rokita).
+  kSingleUnnormalised,
   // Each layer is blurred by itself, then composited: what lies behind a blurred edge is known.
   kLayers,
   // The mean of whole pictures from points of the lens at times of the shutter: the reference.
@@ -49,13 +49,14 @@ struct PartBlur {
   LayerBlur blur = LayerBlur::kAutomatic;
 };
 
-// Where everything moves from one frame to the next, for motion blur. Everything is taken to move in straight
-// lines, from half the shutter's time before this frame to half of it after.
+// Where everything moves to from this frame, which LayerRenderer::transforms() are of, for motion blur.
+// Everything is taken to move in straight lines, from half the shutter's time before this frame to half of it
+// after.
 struct FrameMotion {
-  View later = {};                          // the view of the next frame, of the same handedness
-  std::span<const Mat4> stored = {};        // scene_from_stored in this frame, one for each object, or empty
-  std::span<const Mat4> later_stored = {};  // the same in the next frame
-  double shutter = 0.5;                     // share of a frame's time that the shutter is open, 0 to 1
+  View later = {};  // the view of the next frame, of the same handedness
+  // scene_from_stored in the next frame, one for each object; empty: all are as stored.
+  std::span<const Mat4> later_stored = {};
+  double shutter = 0.5;  // share of a frame's time that the shutter is open, 0 to 1
 };
 
 struct LensSettings {
@@ -90,14 +91,14 @@ struct LensStats {
 // Limits of kLayers: each layer is drawn from the lens's middle at the shutter's middle, so what it hides of
 // itself is missing where a blur should show it, unless the layer is accumulated. The order is that of the
 // layers given: LayerSorter::update() takes the eyes of a whole lens, and sweptHull() the parts' motion.
-// Surfaces outside the picture are not drawn and not blurred into it; what is not in the picture
-// at the shutter's middle is missing. Motion blur moves a layer as a whole, as the middle of its visible
-// pixels moves on the screen: turning, growing and bending are lost, and edges of layers that move together
-// do not hide the same things at all times. kAccumulate draws the layer at its places in time and loses
-// nothing of its own motion.
+// Surfaces outside the picture are not drawn and not blurred into it; what is not in the picture at the
+// shutter's middle is missing. Motion blur moves a layer as a whole, as the middle of its visible pixels
+// moves on the screen: turning, growing and bending are lost, and edges of layers that move together do not
+// hide the same things at all times. kAccumulate draws the layer at its places in time and loses nothing of
+// its own motion.
 //
-// The renderer's transforms must be those of the frame (setTransforms); with motion they are set during
-// draw() and restored at its end.
+// The renderer's transforms must be those of the frame (setTransforms); with motion others are set during
+// draw(), and these again at its end.
 class LensPicture {
  public:
   // scene is the one that the renderer was made of; it is not needed afterwards. The renderer must outlive
@@ -107,7 +108,7 @@ class LensPicture {
   LensPicture(LensPicture&&) noexcept;
   LensPicture& operator=(LensPicture&&) noexcept;
 
-  // Draws the picture, without depths. With a sky it is opaque; kSingleSpread's is then composited over
+  // Draws the picture, without depths. With a sky it is opaque; kSingleUnnormalised's is then composited over
   // black. Errors: no passes; a part of the layers or of settings.parts that is no object; kLayers with a
   // depth-buffered layer (FrameLayers::depth_buffered); motion with a single picture, with a wrong number of
   // transforms, or with a shutter outside 0 to 1.

@@ -283,6 +283,9 @@ Result<LayerRenderer> LayerRenderer::create(const SceneView& scene, const LayerR
 void LayerRenderer::setTransforms(std::span<const Mat4> scene_from_stored) {
   impl_->places.set(scene_from_stored);
 }
+std::span<const Mat4> LayerRenderer::transforms() const {
+  return impl_->places.all();
+}
 
 void LayerRenderer::setPieces(std::vector<ObjectPiece> pieces) {
   impl_->pieces = std::move(pieces);

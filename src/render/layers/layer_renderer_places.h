@@ -22,6 +22,7 @@ class ObjectPlaces {
   // Objects beyond the end of the list are drawn as stored. An empty list leaves all objects as stored.
   void set(std::span<const Mat4> scene_from_stored);
   bool asStored() const { return scene_from_stored_.empty(); }
+  std::span<const Mat4> all() const { return scene_from_stored_; }  // one for each object, or none
 
   // Whether an object can be drawn: it is one of the scene's and its transform is finite.
   bool drawable(std::uint32_t object) const {

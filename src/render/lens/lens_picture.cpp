@@ -78,6 +78,7 @@ struct LensPicture::Impl {
   struct Frame {
     const View& view;
     const LensSettings& settings;
+    const std::optional<Motion>& motion;
     LensStats stats;
     std::size_t steps = 0, drawn = 0;  // passes of accumulation, or layers; some layers may be drawn as one
 
@@ -136,10 +137,11 @@ Status LensPicture::Impl::check(const FrameLayers& layers, const LensSettings& s
     return Success{};
   }
   const FrameMotion& motion = *settings.motion;
-  if (settings.method == LensMethod::kSingleNormalised || settings.method == LensMethod::kSingleSpread) {
+  if (settings.method == LensMethod::kSingleNormalised ||
+      settings.method == LensMethod::kSingleUnnormalised) {
     return Error{"one picture of everything cannot be blurred by motion; use layers or accumulation"};
   }
-  if (!fits(motion.stored, objects) || !fits(motion.later_stored, objects)) {
+  if (!fits(motion.later_stored, objects)) {
     return Error{"motion takes one transform an object, of which there are " + std::to_string(objects)};
   }
   if (!(motion.shutter >= 0.0 && motion.shutter <= 1.0)) {
@@ -160,7 +162,7 @@ void LensPicture::Impl::drawObjects(Frame& frame, const View& view, std::span<co
 
 void LensPicture::Impl::accumulate(Frame& frame, std::span<const ObjectId> ids, LayerDraw how,
                                    LayerImage& image) {
-  const std::optional<FrameMotion>& motion = frame.settings.motion;
+  const std::optional<Motion>& motion = frame.motion;
   const float weight = 1.0f / static_cast<float>(frame.settings.passes);
   how.depths = false;
   image.clear(renderer->width(), renderer->height());
@@ -211,12 +213,12 @@ void LensPicture::Impl::drawAccumulated(Frame& frame, std::span<const ObjectId> 
     return;
   }
   // A sky shows little detail, so the mean of pictures over skies is taken as their mean over the mean sky.
-  if (!frame.settings.motion) {
+  if (!frame.motion) {
     renderer->drawSky(frame.view, drawn);
   } else {
     drawn.clear(renderer->width(), renderer->height());
     for (const LensPass& pass : passesOf(frame.settings)) {
-      renderer->drawSky(viewAt(frame.view, frame.settings.motion->later, pass.time), pass_image);
+      renderer->drawSky(viewAt(frame.view, frame.motion->later, pass.time), pass_image);
       addTo(drawn, pass_image, 1.0f / static_cast<float>(frame.settings.passes));
     }
   }
@@ -245,8 +247,8 @@ Status LensPicture::Impl::drawLayers(Frame& frame, const FrameLayers& layers, La
   if (frame.settings.sky) {
     renderer->drawSky(frame.view, drawn);
     blurSky(frame);
-    if (frame.settings.motion) {
-      move(skyStep(frame.view, *frame.settings.motion, sky), sky);
+    if (frame.motion) {
+      move(skyStep(frame.view, *frame.motion, sky), sky);
     }
     compositeOver(picture, sky);
   }
@@ -300,8 +302,8 @@ void LensPicture::Impl::blurLayer(Frame& frame, std::span<const ObjectId> ids, c
     blurByDepth(drawn, frame.view, frame.settings.lens, Spread::kAsItArrives, image);
     limitOpacity(image);
   }
-  if (frame.settings.motion) {
-    const PixelStep step = layerStep(frame.view, *frame.settings.motion, ids, seen, image);
+  if (frame.motion) {
+    const PixelStep step = layerStep(frame.view, *frame.motion, ids, seen, image);
     frame.stats.moved += step.x != 0.0 || step.y != 0.0 ? 1 : 0;
     move(step, image);
   }
@@ -321,29 +323,30 @@ LensPicture::LensPicture(LensPicture&&) noexcept = default;
 LensPicture& LensPicture::operator=(LensPicture&&) noexcept = default;
 
 Result<LensStats> LensPicture::draw(const View& given_view, const FrameLayers& layers,
-                                    const LensSettings& given_settings, LayerImage& picture) {
-  if (const Status ok = impl_->check(layers, given_settings); !ok) {
+                                    const LensSettings& settings, LayerImage& picture) {
+  if (const Status ok = impl_->check(layers, settings); !ok) {
     return ok.error();
   }
   const View view = scene::withUnitAxes(given_view);
-  LensSettings settings = given_settings;
-  if (settings.motion) {
-    scene::makeAxesUnit(settings.motion->later);
+  std::optional<Motion> motion;
+  if (const std::optional<FrameMotion>& given = settings.motion) {
+    const std::span<const Mat4> stored = impl_->renderer->transforms();
+    motion = Motion{.later = scene::withUnitAxes(given->later),
+                    .stored = {stored.begin(), stored.end()},
+                    .later_stored = given->later_stored,
+                    .shutter = given->shutter};
   }
   std::vector<ObjectId> ids;
   for (const PartId part : layers.parts) {
     ids.push_back(ObjectId(part.value));
   }
-  if (settings.motion) {
-    impl_->renderer->setTransforms(settings.motion->stored);
-  }
   const std::size_t steps = settings.method == LensMethod::kAccumulation ? settings.passes : layers.layers();
-  Impl::Frame frame{view, settings, {}, steps, 0};
+  Impl::Frame frame{view, settings, motion, {}, steps, 0};
   switch (settings.method) {
     case LensMethod::kSingleNormalised:
       impl_->drawSingle(frame, ids, Spread::kNormalised, picture);
       break;
-    case LensMethod::kSingleSpread:
+    case LensMethod::kSingleUnnormalised:
       impl_->drawSingle(frame, ids, Spread::kAsItArrives, picture);
       break;
     case LensMethod::kLayers:

@@ -64,8 +64,7 @@ View viewAt(const View& view, const View& later, double time) {
   return result;
 }
 
-void transformsAt(const FrameMotion& motion, std::size_t objects, double time,
-                  std::vector<Mat4>& transforms) {
+void transformsAt(const Motion& motion, std::size_t objects, double time, std::vector<Mat4>& transforms) {
   transforms.resize(objects);
   for (std::size_t i = 0; i < objects; ++i) {
     const Mat4 now = placeOf(motion.stored, i), later = placeOf(motion.later_stored, i);
@@ -75,7 +74,7 @@ void transformsAt(const FrameMotion& motion, std::size_t objects, double time,
   }
 }
 
-PixelStep layerStep(const View& view, const FrameMotion& motion, std::span<const ObjectId> objects,
+PixelStep layerStep(const View& view, const Motion& motion, std::span<const ObjectId> objects,
                     const SeenLayer& seen, const LayerImage& image) {
   const Vec3d here = pointAt(view, seen, image);
   Vec3d sum;
@@ -94,7 +93,7 @@ PixelStep layerStep(const View& view, const FrameMotion& motion, std::span<const
                : PixelStep{};
 }
 
-PixelStep skyStep(const View& view, const FrameMotion& motion, const LayerImage& image) {
+PixelStep skyStep(const View& view, const Motion& motion, const LayerImage& image) {
   if (view.orthographic) {
     return {};
   }

@@ -22,7 +22,7 @@ namespace {
 constexpr std::array<Name<LensMethod>, 4> kLensMethods{{
     {"layers", LensMethod::kLayers},
     {"potmesil", LensMethod::kSingleNormalised},
-    {"rokita", LensMethod::kSingleSpread},
+    {"rokita", LensMethod::kSingleUnnormalised},
     {"accumulation", LensMethod::kAccumulation},
 }};
 constexpr std::array<Name<LayerBlur>, 3> kLayerBlurs{{
@@ -101,10 +101,8 @@ class LayerLens : public FrameMaker {
     placements(input_.input.moving, *other, other_stored_);
     View later = walk.view(*other, input_.input.moving.scene);
     later.aspect = frame.view.aspect;
-    settings_.motion = FrameMotion{.later = later,
-                                   .stored = frame.scene_from_stored,
-                                   .later_stored = other_stored_,
-                                   .shutter = options_.motion_blur};
+    settings_.motion =
+        FrameMotion{.later = later, .later_stored = other_stored_, .shutter = options_.motion_blur};
   }
 
   Json statsJson(const LensStats& stats) const {

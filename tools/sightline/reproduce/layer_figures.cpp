@@ -186,7 +186,7 @@ Status figure16(const LayerFigureOptions& options, Experiment& table, LayerFigur
   };
   for (const Way& way : {Way{LensMethod::kSingleNormalised, "figure16_potmesil",
                              "(a) one picture, normalised (Potmesil): the bar's edge stays sharp"},
-                         Way{LensMethod::kSingleSpread, "figure16_rokita",
+                         Way{LensMethod::kSingleUnnormalised, "figure16_rokita",
                              "(b) one picture, as it arrives (Rokita): dark where nothing arrives"},
                          Way{LensMethod::kLayers, "figure16_layers", "(c) two layers, composited"}}) {
     settings.method = way.method;
