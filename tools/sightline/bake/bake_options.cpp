@@ -52,17 +52,19 @@ void addOcclusionOptions(CLI::App& command, BakeOptions& options) {
       ->check(isOneOf({"fused", "convex"}, false))
       ->capture_default_str();
   command
-      .add_option("--divisions", settings.divisions,
-                  "where surfaces do not hide an object from a whole cell for sure, the widest of the cell, "
-                  "the object's box and, with --narrowings, the window is halved so often at most, and each "
-                  "half tested")
+      .add_option(
+          "--divisions", settings.divisions,
+          "what is undecided after the narrowings is halved up to so many times, across the widest of "
+          "the cell, the object's box and, with --narrowings, the window between them; each half is "
+          "tested")
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
   command
       .add_option(
           "--narrowings", settings.narrowings,
-          "before that, what of the cell, of a window before the object, and of the object's box lines "
-          "of sight may pass is narrowed so often at most")
+          "where surfaces do not hide an object from a whole cell for sure, parts of the cell, of the "
+          "object's box and of a window between them that no line of sight can pass are cut off, up to so "
+          "many times")
       ->check(CLI::Range(0u, 8u))
       ->capture_default_str();
   command

@@ -74,11 +74,12 @@ struct BakeSettings {
   double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
   // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
-  // Where surfaces do not hide an object from a whole cell for sure, the widest of the cell, the object's box
-  // and, with narrowings, the window is halved up to this many times, 0 to 16, and each half tested.
+  // Two ways to hide more where surfaces do not hide an object from a whole cell for sure. First, up to so
+  // many times (narrowings, 0 to 8), parts of the cell, of the object's box and of a window between them are
+  // cut off that no line of sight can pass. What is then still undecided is halved up to so many times
+  // (divisions, 0 to 16), across the widest of the cell, the object's box and the window, and each half is
+  // tested.
   std::uint32_t divisions = 0;
-  // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass
-  // is narrowed up to this many times, 0 to 8.
   std::uint32_t narrowings = 0;
   // With surfaces, an object is hidden if each of so many boxes around its triangles is, at most
   // kMaxObjectBoxes; 1: its own box alone. box_margin: ObjectBoxesSettings::margin, metres.
@@ -98,8 +99,8 @@ struct BakeSettings {
 struct PartTask {
   std::uint64_t id = 1;          // 1: the root; 8 * id + i: child number i of it
   double search_distance = 0.0;  // metres; set by the parent part
-  std::vector<std::byte>
-      seen{};  // the objects that the parent sees, as the parent part wrote them; none: all
+  // The objects that the parent sees, as the parent part wrote them; none: all.
+  std::vector<std::byte> seen{};
   friend bool operator==(const PartTask&, const PartTask&) = default;
 };
 
@@ -122,12 +123,13 @@ struct PartSummary {
 };
 
 struct BakeStats {
-  std::uint64_t samples = 0;         // viewpoints for which something was computed
-  std::uint64_t shadows = 0;         // pairs of an occluder and a viewpoint
-  std::uint64_t forgotten = 0;       // samples discarded because memory ran out
-  std::size_t max_sample_bytes = 0;  // peak memory of samples, bytes
-  // Whether something is hidden from a region, or how much a point sees; and how many of these questions were
-  // asked, where the answers to the others were taken over from an earlier bake.
+  std::uint64_t samples = 0;    // viewpoints for which something was computed
+  std::uint64_t shadows = 0;    // pairs of an occluder and a viewpoint
+  std::uint64_t forgotten = 0;  // samples discarded because memory ran out
+  // Peak memory of samples, bytes; after add(), the sum of the workers' peaks.
+  std::size_t max_sample_bytes = 0;
+  // Questions: is something hidden from a region, or how much does a point see. Asked are those whose answers
+  // were computed; the others were answered by what takeOver() had read of an earlier bake.
   std::uint64_t questions = 0, asked = 0;
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };

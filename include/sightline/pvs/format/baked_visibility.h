@@ -15,20 +15,21 @@
 
 namespace sightline {
 
-// How a file was made; stored in the file, for people and for --resume.
+// How a file was made.
 struct BakeRecord {
   double near_distance = 0.0;  // metres, BakeSettings::near_distance
   std::uint64_t triangle_budget = 0;
   std::uint32_t max_depth = 0;
-  std::string settings{};  // all settings as JSON, one line
+  // The caller's text, SightExtras::settings. The tool stores its settings here, as one line of JSON.
+  std::string settings{};
 
   friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
 };
 
 // Sets of nodes of a BoxTree, each distinct set once. Nodes are ascending, and none is below another.
 struct NodeSets {
-  std::vector<std::uint64_t> first{
-      0};  // index of each set's first node in nodes; one more than there are sets
+  // The index of each set's first node in nodes; one more than there are sets.
+  std::vector<std::uint64_t> first{0};
   std::vector<std::uint32_t> nodes{};
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(first.size() - 1); }
