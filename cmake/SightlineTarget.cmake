@@ -25,8 +25,8 @@ endif()
 set(SIGHTLINE_SANITIZE_FLAGS "")
 if(SIGHTLINE_SANITIZE)
   # AddressSanitizer sees the memory that a null or wrapped pointer touches, or one into a smaller object or another
-  # class's. Without a check of each pointer beside that, programs take a quarter to a third less time. That pointers are aligned is
-  # checked where bytes are read as objects: the readers of files are fuzzed with all checks.
+  # class's. Without a check of each pointer beside that, programs take a quarter to a third less time. That pointers
+  # are aligned is checked where bytes are read as objects: the readers of files are fuzzed with all checks.
   set(SIGHTLINE_SANITIZE_FLAGS -fsanitize=address,undefined
     -fno-sanitize=null,pointer-overflow,object-size,vptr,alignment)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
@@ -36,8 +36,9 @@ if(SIGHTLINE_SANITIZE)
   endif()
 endif()
 
-# Instruction sets of ARM and RISC-V for which Highway compiles nothing: their vectors have no fixed size, so they can be
-# neither members nor captured nor in arrays. Machines that have such a set take the best one that is left, on ARM NEON.
+# Instruction sets of ARM and RISC-V for which Highway compiles nothing: their vectors have no fixed size, so they can
+# be neither members nor captured nor in arrays. Machines that have such a set take the best one that is left, on ARM
+# NEON.
 set(SIGHTLINE_UNSIZED_TARGETS "HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV")
 
 function(sightline_options target)

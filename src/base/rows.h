@@ -1,8 +1,7 @@
 #pragma once
 
 // Rows of items that lie one after the other in one array, with a second array that says where each row
-// begins
-// ("compressed sparse rows").
+// begins ("compressed sparse rows").
 
 #include <algorithm>
 #include <cstddef>

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "src/math/infinite_box.h"

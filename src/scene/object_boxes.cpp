@@ -194,8 +194,8 @@ Box Divider::halve(std::size_t begin, std::size_t end, const Box& half, const Cu
   for (std::size_t i = begin; i < end; ++i) {
     const std::uint32_t t = lists_[i];
     const Box& bounds = bounds_[t];
-    // What touches the plane from the other side does not belong here. What lies in it is where the solid
-    // lies that it bounds, as CellGrid::mark() has it.
+    // What touches the plane from the other side does not belong here. What lies in it bounds a solid, so it
+    // goes to the half behind it.
     const bool in_plane = bounds.min[axis] == plane && bounds.max[axis] == plane;
     const bool elsewhere = in_plane ? upper == (doubledArea(t)[axis] > 0.0)
                            : upper  ? bounds.max[axis] <= plane

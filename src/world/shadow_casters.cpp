@@ -1,7 +1,6 @@
 #include "sightline/world/shadow_casters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>

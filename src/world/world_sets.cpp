@@ -1,6 +1,5 @@
 // Instances that a baked scene knows as its objects.
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 

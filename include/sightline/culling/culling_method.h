@@ -123,8 +123,8 @@ struct CullingFrame {
   std::span<const MovingSurfaces> moving_surfaces{};  // of this frame alone; for methods that draw surfaces
   std::uint32_t max_occluders = 0;                    // so many were asked for
   std::span<const ObjectId> last_visible{};           // what the last frame kept; only if not jumped
-  const culling::SetFilter* filter =
-      nullptr;                      // what is not in it is neither tested nor kept; null: no filter
+  // What is not in it is neither tested nor kept; null: no filter.
+  const culling::SetFilter* filter = nullptr;
   bool filter_changed = false;      // since the last frame
   std::uint32_t min_node_cost = 0;  // see CullerSettings
   bool test_objects = true;

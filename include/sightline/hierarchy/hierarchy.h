@@ -35,8 +35,8 @@ enum class HierarchyKind : std::uint8_t { kKdTree, kBvh };
 struct Hierarchy {
   HierarchyKind kind = HierarchyKind::kBvh;
   std::vector<HierarchyNode> nodes{};  // [0] is the root; empty if there are no objects
-  std::vector<ObjectId>
-      objects{};  // objects of the leaves, leaf after leaf; a kd-tree may list an object several times
+  // The objects of the leaves, leaf after leaf. A kd-tree may list an object several times.
+  std::vector<ObjectId> objects{};
   std::uint32_t object_count = 0;  // number of distinct objects
   std::uint32_t depth = 0;         // number of levels
 

@@ -7,8 +7,8 @@
 // image is redrawn when the fit is not good enough.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, 1997, section 12.2. Lengyel, Snyder. Rendering with Coherent
-// Layers. SIGGRAPH 1997 (warps fitted to characteristic points; geometric, sampling,
-// visibility and photometric errors).
+// Layers. SIGGRAPH 1997 (warps fitted to characteristic points; geometric, sampling, visibility and
+// photometric errors).
 // Differs from the second in: warps may be projective; an image is redrawn when its error is too large,
 // whereas the paper redraws in the order of errors until a frame's time is used up; the photometric error is
 // bounded by how far objects have turned.

@@ -5,17 +5,12 @@
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.2.
 // Differs from the paper in:
 // - A node has two sorted lists, one of lower and one of upper bounds (min_cost.h). A part is in the left
-// child if
-// its low <= value, so these parts begin the lower list, and in the right child if its high > value, so these
-// end
-// the upper list. A mark on each bound says whether the part is in that child now. Where mark and place
-// disagree,
-//   the part must be handed down or removed.
+//   child if its low <= value, so these parts begin the lower list, and in the right child if its high >
+//   value, so these end the upper list. A mark on each bound says whether the part is in that child now.
+//   Where mark and place disagree, the part must be handed down or removed.
 // - Parts have no pointers to their nodes. A part lies in exactly the nodes to which the rule leads with its
-// bounds;
-// setActive() follows that path. A part that leaves a node is handed down as removed and leaves all nodes
-// below
-//   in the same depth-first pass, before any query.
+//   bounds; setActive() follows that path. A part that leaves a node is handed down as removed and leaves all
+//   nodes below in the same depth-first pass, before any query.
 // - Whether a part is active is stored once per part, not in each leaf. Nodes count their active parts.
 // - The depth and the number of copies of parts are limited; nodes beyond the limit become leaves.
 

@@ -24,8 +24,7 @@ class ExtentTree {
 
   // Call once a frame, before queries. All parts are active afterwards. The first call, and a call after the
   // number of parts or axes changed, builds the tree. Other calls rebalance it and continue a new tree if one
-  // has been
-  // begun: its nodes are made over several frames, and once complete it replaces the current tree.
+  // has been begun: its nodes are made over several frames, and once complete it replaces the current tree.
   void update(const ExtentTable& table);
   // Builds a new tree at once.
   void build(const ExtentTable& table);

@@ -20,9 +20,8 @@ struct PointGrid {
 };
 
 // The grid points near viewpoints, or of a whole box: see ViewpointDatabase::build. There are at most
-// max_points
-// (> 0). bounds: of the scene; empty or broken bounds count as a box without extent at the origin. spacing:
-// in metres; chosen where it is not finite or not positive.
+// max_points (> 0). bounds: of the scene; empty or broken bounds count as a box without extent at the origin.
+// spacing: in metres; chosen where it is not finite or not positive.
 PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double spacing,
                    std::uint32_t max_points);
 

@@ -1,6 +1,5 @@
 #include "sightline/occluders/closed_scene.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>

@@ -1,7 +1,6 @@
 #include "src/occluders/conform/conform_split.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
 

@@ -59,7 +59,7 @@ HWY_INLINE std::uint32_t readFrom(const DepthLevel& level, const CellRange& rang
   return std::min(range.x0, level.stride - kBlock);
 }
 
-// Calls row(lane, mask of the range's cells, their positions) for the groups of lanes of eight cells.
+// Calls use(lane, mask of the range's cells, their positions) for the groups of lanes of eight cells.
 template <typename Use>
 HWY_INLINE void forLanes(const CellRange& range, std::uint32_t from, Use&& use) {
   const Lanes d;

@@ -42,7 +42,7 @@ class PolygonStack {
   }
 
   // Splits a polygon. plane: unit normal. ref: the plane's name, or PlaneRef() for planes that edges cannot
-  // lie in. A corner counts as on the plane within kOnPlane * (relative * magnitude + scale); a polygon
+  // lie in. A corner counts as on the plane within kOnPlane * (relative * l1Norm(corner) + scale); a polygon
   // reaches a side when a corner is four times as far there.
   //
   // New edges get ref as their plane and are marked as embedded. An old edge keeps its plane, and is marked

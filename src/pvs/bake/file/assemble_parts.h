@@ -21,8 +21,8 @@ struct PartCell {
 // Reads a part; nothing if it is missing, corrupt or of another plan.
 using ReadCell = std::function<std::optional<PartCell>(std::uint64_t id)>;
 
-// The root with all below it, merged where they touch. Nothing if a part cannot be read; `broken`
-// is then its id.
+// The root with all below it, merged where they touch. Nothing if a part cannot be read; `broken` is then its
+// id.
 std::optional<BakedCell> cellOfParts(const BakeScene& scene, const ReadCell& read, std::uint64_t& broken);
 
 // Gives the same cells to the flattener, each as soon as it is clear that it stays as it is. At most one part
