@@ -44,7 +44,7 @@ constexpr std::uint32_t kAimedRays = 64;              // at each object that no 
 
 // What the eye sees in one view.
 struct Seen {
-  std::vector<Witness> witnesses;  // ascending by id
+  std::vector<SeenPoint> witnesses;  // ascending by id
   std::size_t by_pixels = 0;
 };
 
@@ -61,10 +61,10 @@ Seen seeExactly(const ExactVisibility& exact, const View& view, std::span<const 
       others.push_back(object);
     }
   }
-  const std::vector<Witness> aimed = exact.visibleByAimedRays(view, others, kAimedRays);
+  const std::vector<SeenPoint> aimed = exact.visibleByAimedRays(view, others, kAimedRays);
   seen.witnesses.insert(seen.witnesses.end(), aimed.begin(), aimed.end());
   std::sort(seen.witnesses.begin(), seen.witnesses.end(),
-            [](const Witness& a, const Witness& b) { return a.object.value < b.object.value; });
+            [](const SeenPoint& a, const SeenPoint& b) { return a.object.value < b.object.value; });
   return seen;
 }
 
@@ -200,7 +200,7 @@ class Comparison {
   Seen see(const View& view) {
     frustum_.cull(view);
     Seen seen = seeExactly(exact_, view, frustum_.visible());
-    for (const Witness& witness : seen.witnesses) {
+    for (const SeenPoint& witness : seen.witnesses) {
       ++exact_count_.all;
       exact_count_.small += isSmall(witness.object) ? 1 : 0;
     }
@@ -216,7 +216,7 @@ class Comparison {
     row.kept.small += kept.small;
     row.us.push_back(us);
     auto next = kept_.begin();
-    for (const Witness& witness : seen.witnesses) {
+    for (const SeenPoint& witness : seen.witnesses) {
       while (next != kept_.end() && next->value < witness.object.value) {
         ++next;
       }
@@ -227,7 +227,7 @@ class Comparison {
   }
 
   // Once for all methods: wide arithmetic takes its time.
-  bool confirm(const View& view, const Witness& witness, Confirmed& confirmed) const {
+  bool confirm(const View& view, const SeenPoint& witness, Confirmed& confirmed) const {
     const auto [at, added] = confirmed.try_emplace(witness.object.value, false);
     if (added) {
       at->second = exact_.confirm(view, witness);

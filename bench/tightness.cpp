@@ -120,7 +120,7 @@ void table(const std::string& name, std::size_t step) {
       continue;
     }
     std::vector<bool> visible(scene.objects.size());
-    for (const Witness& witness : exact.visibleThroughPixels(view, 1280, 720)) {
+    for (const SeenPoint& witness : exact.visibleThroughPixels(view, 1280, 720)) {
       visible[witness.object.value] = true;
       ++seen;
     }

@@ -41,9 +41,10 @@ struct ExactVisibility::Impl {
   template <typename OnHits>
   void traceRows(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t begin,
                  std::uint32_t end, OnHits&& on_hits) const;
-  std::optional<Witness> aimAt(const View& view, ObjectId object, std::uint32_t samples,
-                               std::vector<RayHit>& hits) const;
-  void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
+  std::optional<SeenPoint> aimAt(const View& view, ObjectId object, std::uint32_t samples,
+                                 std::vector<RayHit>& hits) const;
+  void lookBeside(const View& view, ObjectId object, std::uint32_t samples,
+                  std::vector<SeenPoint>& seen) const;
   using Decide = Decision (VisibilityProof::*)(ObjectId object, std::uint32_t max_steps);
   std::vector<Decision> decideEach(const View& view, std::span<const ObjectId> objects,
                                    std::uint32_t max_steps, Decide decide,
@@ -78,9 +79,9 @@ void ExactVisibility::Impl::traceRows(const View& view, std::uint32_t width, std
   }
 }
 
-std::vector<Witness> ExactVisibility::visibleThroughPixels(const View& view, std::uint32_t width,
-                                                           std::uint32_t height,
-                                                           const ParallelFor& parallel_for) const {
+std::vector<SeenPoint> ExactVisibility::visibleThroughPixels(const View& view, std::uint32_t width,
+                                                             std::uint32_t height,
+                                                             const ParallelFor& parallel_for) const {
   std::vector<std::atomic<std::uint64_t>> first_hit(impl_->scene.objects.size());
   for (std::atomic<std::uint64_t>& hit : first_hit) {
     hit.store(kNotSeen, std::memory_order_relaxed);
@@ -93,7 +94,7 @@ std::vector<Witness> ExactVisibility::visibleThroughPixels(const View& view, std
                        }
                      });
   });
-  std::vector<Witness> visible;
+  std::vector<SeenPoint> visible;
   for (std::uint32_t o = 0; o < first_hit.size(); ++o) {
     const std::uint64_t hit = first_hit[o].load(std::memory_order_relaxed);
     if (hit != kNotSeen) {
@@ -105,10 +106,10 @@ std::vector<Witness> ExactVisibility::visibleThroughPixels(const View& view, std
   return visible;
 }
 
-std::vector<Witness> ExactVisibility::pixelsShowing(ObjectId object, const View& view, std::uint32_t width,
-                                                    std::uint32_t height,
-                                                    const ParallelFor& parallel_for) const {
-  std::vector<std::vector<Witness>> of_row(height);
+std::vector<SeenPoint> ExactVisibility::pixelsShowing(ObjectId object, const View& view, std::uint32_t width,
+                                                      std::uint32_t height,
+                                                      const ParallelFor& parallel_for) const {
+  std::vector<std::vector<SeenPoint>> of_row(height);
   parallel_for(height, [&](std::uint32_t begin, std::uint32_t end) {
     impl_->traceRows(view, width, height, begin, end,
                      [&](std::uint32_t pixel, const RayScene::Batch& batch, const std::vector<RayHit>& hits) {
@@ -126,17 +127,18 @@ std::vector<Witness> ExactVisibility::pixelsShowing(ObjectId object, const View&
                        }
                      });
   });
-  std::vector<Witness> all;
-  for (const std::vector<Witness>& row : of_row) {
+  std::vector<SeenPoint> all;
+  for (const std::vector<SeenPoint>& row : of_row) {
     all.insert(all.end(), row.begin(), row.end());
   }
   return all;
 }
 
-std::vector<Witness> ExactVisibility::visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
-                                                         std::uint32_t samples,
-                                                         const ParallelFor& parallel_for) const {
-  std::vector<std::vector<Witness>> of_object(objects.size());
+std::vector<SeenPoint> ExactVisibility::visibleBesideEdges(const View& view,
+                                                           std::span<const ObjectId> objects,
+                                                           std::uint32_t samples,
+                                                           const ParallelFor& parallel_for) const {
+  std::vector<std::vector<SeenPoint>> of_object(objects.size());
   parallel_for(static_cast<std::uint32_t>(objects.size()), [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) {
       if (impl_->scene.objects[objects[i].value].index_count > 0) {
@@ -144,20 +146,20 @@ std::vector<Witness> ExactVisibility::visibleBesideEdges(const View& view, std::
       }
     }
   });
-  std::vector<Witness> all;
-  for (const std::vector<Witness>& witnesses : of_object) {
+  std::vector<SeenPoint> all;
+  for (const std::vector<SeenPoint>& witnesses : of_object) {
     all.insert(all.end(), witnesses.begin(), witnesses.end());
   }
   std::stable_sort(all.begin(), all.end(),
-                   [](const Witness& a, const Witness& b) { return a.object < b.object; });
-  const auto same = [](const Witness& a, const Witness& b) { return a.object == b.object; };
+                   [](const SeenPoint& a, const SeenPoint& b) { return a.object < b.object; });
+  const auto same = [](const SeenPoint& a, const SeenPoint& b) { return a.object == b.object; };
   all.erase(std::unique(all.begin(), all.end(), same), all.end());
   return all;
 }
 
 // Appends a witness for each hit.
 void ExactVisibility::Impl::lookBeside(const View& view, ObjectId object, std::uint32_t sample_count,
-                                       std::vector<Witness>& seen) const {
+                                       std::vector<SeenPoint>& seen) const {
   RayScene::Batch batch;
   std::vector<RayHit> hits;
   std::uint32_t count = 0;
@@ -177,9 +179,9 @@ void ExactVisibility::Impl::lookBeside(const View& view, ObjectId object, std::u
   }
 }
 
-std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId object,
-                                                    std::uint32_t sample_count,
-                                                    std::vector<RayHit>& hits) const {
+std::optional<SeenPoint> ExactVisibility::Impl::aimAt(const View& view, ObjectId object,
+                                                      std::uint32_t sample_count,
+                                                      std::vector<RayHit>& hits) const {
   RayScene::Batch batch;
   std::uint32_t count = 0;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
@@ -202,7 +204,7 @@ std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId o
         best = hit.object == object && better ? &hit : best;
       }
       if (best != nullptr) {
-        return Witness{object, batch[best->ray].at(best->t)};
+        return SeenPoint{object, batch[best->ray].at(best->t)};
       }
       count = 0;
     }
@@ -210,10 +212,11 @@ std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId o
   return std::nullopt;
 }
 
-std::vector<Witness> ExactVisibility::visibleByAimedRays(const View& view, std::span<const ObjectId> objects,
-                                                         std::uint32_t samples,
-                                                         const ParallelFor& parallel_for) const {
-  std::vector<std::optional<Witness>> found(objects.size());
+std::vector<SeenPoint> ExactVisibility::visibleByAimedRays(const View& view,
+                                                           std::span<const ObjectId> objects,
+                                                           std::uint32_t samples,
+                                                           const ParallelFor& parallel_for) const {
+  std::vector<std::optional<SeenPoint>> found(objects.size());
   parallel_for(static_cast<std::uint32_t>(objects.size()), [&](std::uint32_t begin, std::uint32_t end) {
     std::vector<RayHit> hits;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -222,8 +225,8 @@ std::vector<Witness> ExactVisibility::visibleByAimedRays(const View& view, std::
       }
     }
   });
-  std::vector<Witness> witnesses;
-  for (const std::optional<Witness>& witness : found) {
+  std::vector<SeenPoint> witnesses;
+  for (const std::optional<SeenPoint>& witness : found) {
     if (witness) {
       witnesses.push_back(*witness);
     }
@@ -231,7 +234,7 @@ std::vector<Witness> ExactVisibility::visibleByAimedRays(const View& view, std::
   return witnesses;
 }
 
-bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
+bool ExactVisibility::confirm(const View& view, const SeenPoint& witness) const {
   return VisibilityProof(impl_->proofs, impl_->rays, view).reaches(witness.point, witness.object);
 }
 

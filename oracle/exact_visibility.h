@@ -20,11 +20,11 @@
 namespace sightline {
 
 // A point of an object that a ray from the eye reaches.
-struct Witness {
+struct SeenPoint {
   ObjectId object;
   Vec3d point;  // scene space
 
-  friend bool operator==(const Witness&, const Witness&) = default;
+  friend bool operator==(const SeenPoint&, const SeenPoint&) = default;
 };
 
 enum class Verdict : std::uint8_t {
@@ -35,7 +35,7 @@ enum class Verdict : std::uint8_t {
 
 struct Decision {
   Verdict verdict = Verdict::kUndecided;
-  Witness witness;  // if visible: its point is rounded to double precision
+  SeenPoint witness;  // if visible: its point is rounded to double precision
 };
 
 // All const functions may be called from several threads at once. Results do not depend on the ParallelFor.
@@ -50,32 +50,33 @@ class ExactVisibility {
   // Objects hit by a ray through the centre of any of width x height pixels, ascending by id, each with the
   // point of the first such pixel (rows from the top). Transparent materials are hit but do not stop rays;
   // back faces of single-sided materials are ignored; only hits between the near and the far plane count.
-  std::vector<Witness> visibleThroughPixels(const View& view, std::uint32_t width, std::uint32_t height,
-                                            const ParallelFor& parallel_for = serialFor) const;
+  std::vector<SeenPoint> visibleThroughPixels(const View& view, std::uint32_t width, std::uint32_t height,
+                                              const ParallelFor& parallel_for = serialFor) const;
 
   // The points where the same rays hit one object, for all pixels that show it, in pixel order.
-  std::vector<Witness> pixelsShowing(ObjectId object, const View& view, std::uint32_t width,
-                                     std::uint32_t height, const ParallelFor& parallel_for = serialFor) const;
+  std::vector<SeenPoint> pixelsShowing(ObjectId object, const View& view, std::uint32_t width,
+                                       std::uint32_t height,
+                                       const ParallelFor& parallel_for = serialFor) const;
 
   // Tries to reach each of these objects with rays aimed at `samples` points of its triangles: vertices, edge
   // and face points, distributed by area, with a seed that depends only on object and eye. Returns a witness
   // for each object that was reached, in the order of `objects`.
-  std::vector<Witness> visibleByAimedRays(const View& view, std::span<const ObjectId> objects,
-                                          std::uint32_t samples,
-                                          const ParallelFor& parallel_for = serialFor) const;
+  std::vector<SeenPoint> visibleByAimedRays(const View& view, std::span<const ObjectId> objects,
+                                            std::uint32_t samples,
+                                            const ParallelFor& parallel_for = serialFor) const;
 
   // Objects visible close beside the edges of these objects. For each object, `samples` rays pass to the left
   // or right of edges of its triangles, by 1e-7 to 1e-2 of the distance, with a seed that depends only on
   // object and eye. The rays run along silhouettes and through narrow gaps, which pixels miss. One point per
   // object, ascending by id.
-  std::vector<Witness> visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
-                                          std::uint32_t samples,
-                                          const ParallelFor& parallel_for = serialFor) const;
+  std::vector<SeenPoint> visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
+                                            std::uint32_t samples,
+                                            const ParallelFor& parallel_for = serialFor) const;
 
   // True if the ray from the eye through the witness's point reaches the object before any opaque surface, in
   // the view. Decided in exact arithmetic on the coordinates as they stand; edges belong to triangles. A
   // surface at the same distance does not hide the object (ties are visible).
-  bool confirm(const View& view, const Witness& witness) const;
+  bool confirm(const View& view, const SeenPoint& witness) const;
 
   // Decides for each of these objects, in exact arithmetic, whether any of its points is visible. The images
   // of nearer triangles are subtracted from the object's own until nothing is left or a ray through what is

@@ -34,9 +34,9 @@ enum class FoundBy : std::uint8_t { kLine, kPlane, kEye };
 struct RegionAnswer {
   bool found = false;
   FoundBy by = FoundBy::kLine;
-  Vec3d eye{};        // if found: in the region
-  View view{};        // if found: from this eye; its near plane clips nothing beyond near_distance
-  Witness witness{};  // if found: what the view shows
+  Vec3d eye{};          // if found: in the region
+  View view{};          // if found: from this eye; its near plane clips nothing beyond near_distance
+  SeenPoint witness{};  // if found: what the view shows
   std::uint64_t lines = 0, planes = 0, eyes = 0;  // that were searched
   // Pairs of an eye and a picture from it, for which the object was proved hidden, and not decided.
   std::uint64_t hidden_views = 0, undecided_views = 0;

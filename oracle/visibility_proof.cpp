@@ -473,7 +473,7 @@ std::optional<VisibilityProof::Triangle> VisibilityProof::blockerOf(const Target
 }
 
 VisibilityProof::Cover VisibilityProof::seenAt(const Target& target, Corner direction) {
-  witness_ = Witness{target.object, pointAt(target.plane, direction)};
+  witness_ = SeenPoint{target.object, pointAt(target.plane, direction)};
   return Cover::kSeen;
 }
 
@@ -507,7 +507,7 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
       return blocker != depth && figures_.side(figures_.lineWhereNearer(blocker, depth), direction) > 0;
     });
     if (in_view && !hidden) {
-      witness_ = Witness{object, pointAt(scene_.corners(first_index), direction)};
+      witness_ = SeenPoint{object, pointAt(scene_.corners(first_index), direction)};
       return true;
     }
   }

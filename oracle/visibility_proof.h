@@ -145,7 +145,7 @@ class VisibilityProof {
   std::vector<RayHit> hits_;
   std::vector<Vec3d> directions_;  // of the rays that were cast last
   std::vector<Triangle> blockers_;
-  std::optional<Witness> witness_;
+  std::optional<SeenPoint> witness_;
   std::uint32_t steps_ = 0, max_steps_ = 0;
 };
 

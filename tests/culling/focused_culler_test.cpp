@@ -428,7 +428,7 @@ TEST_P(FocusedCity, CullsNothingThatIsSeen) {
         kept_objects::lookForCulled(exact, view, {.width = 320, .height = 180, .samples = 12}, hidden,
                                     [&](ObjectId object) { return isKept(culler, object); });
     seen += sightings.through_pixels;
-    for (const Witness& witness : sightings.though_culled) {
+    for (const SeenPoint& witness : sightings.though_culled) {
       ADD_FAILURE() << "frame " << frame << ", object " << witness.object.value << " is seen";
     }
     ++frame;

@@ -137,7 +137,7 @@ class Judge {
         kept_objects::lookForCulled(exact_, view, {.width = 128, .height = 72, .samples = 6}, culled,
                                     [&](ObjectId object) { return cullersWithout(object).empty(); });
     counts.seen += sightings.through_pixels;
-    for (const Witness& witness : sightings.though_culled) {
+    for (const SeenPoint& witness : sightings.though_culled) {
       ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
                     << witness.point.y << " " << witness.point.z << ", " << where << ", but culled by "
                     << cullersWithout(witness.object);

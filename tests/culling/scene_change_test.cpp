@@ -97,7 +97,7 @@ void expectTheSeenIsKept(const ExactVisibility& exact, const AnyCuller& culler, 
                          const std::string& where) {
   const kept_objects::Sightings sightings = kept_objects::lookForCulled(
       exact, view, {}, {}, [&](ObjectId object) { return kept_objects::isKept(culler, object); });
-  for (const Witness& witness : sightings.though_culled) {
+  for (const SeenPoint& witness : sightings.though_culled) {
     ADD_FAILURE() << where << ": object " << witness.object.value << " is seen";
   }
 }

@@ -16,19 +16,19 @@ struct Rays {
 };
 
 struct Sightings {
-  std::size_t through_pixels = 0;      // objects that the rays through pixels hit
-  std::vector<Witness> though_culled;  // proofs that objects are visible of which is_kept(object) is false
+  std::size_t through_pixels = 0;        // objects that the rays through pixels hit
+  std::vector<SeenPoint> though_culled;  // proofs that objects are visible of which is_kept(object) is false
 };
 
 template <typename IsKept>
 Sightings lookForCulled(const ExactVisibility& exact, const View& view, const Rays& rays,
                         std::span<const ObjectId> culled, IsKept&& is_kept) {
-  std::vector<Witness> witnesses = exact.visibleThroughPixels(view, rays.width, rays.height);
+  std::vector<SeenPoint> witnesses = exact.visibleThroughPixels(view, rays.width, rays.height);
   Sightings sightings;
   sightings.through_pixels = witnesses.size();
-  const std::vector<Witness> aimed = exact.visibleByAimedRays(view, culled, rays.samples);
+  const std::vector<SeenPoint> aimed = exact.visibleByAimedRays(view, culled, rays.samples);
   witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-  for (const Witness& witness : witnesses) {
+  for (const SeenPoint& witness : witnesses) {
     if (!is_kept(witness.object) && exact.confirm(view, witness)) {
       sightings.though_culled.push_back(witness);
     }

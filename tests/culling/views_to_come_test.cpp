@@ -451,7 +451,7 @@ void expectWhatIsSeenIsKept(const SeenScene& seen, Culler& culler, std::span<con
     };
     const kept_objects::Sightings sightings =
         kept_objects::lookForCulled(seen.exact, views[v], {.samples = 4}, culled, is_kept);
-    for (const Witness& witness : sightings.though_culled) {
+    for (const SeenPoint& witness : sightings.though_culled) {
       ADD_FAILURE() << where << ", view " << v << ": object " << witness.object.value << " is seen at "
                     << witness.point.x << ' ' << witness.point.y << ' ' << witness.point.z;
     }

@@ -388,7 +388,7 @@ void judgeWalk(const DemoScene& demo, const std::vector<View>& views, const std:
         lookForCulled(exact, view, {.samples = 3}, culledByAny(demo, cullers),
                       [&](ObjectId object) { return namesWithout(cullers, object).empty(); });
     seen += sightings.through_pixels;
-    for (const Witness& witness : sightings.though_culled) {
+    for (const SeenPoint& witness : sightings.though_culled) {
       ADD_FAILURE() << "object " << witness.object.value << " is seen, " << where << " view " << v
                     << ", but culled by " << namesWithout(cullers, witness.object);
     }

@@ -118,7 +118,7 @@ TEST(ExactVisibility, AgreesWithABruteForceRayCasterOnRandomTriangles) {
         continue;
       }
       std::set<std::uint32_t> found;
-      for (const Witness& witness : oracle.visibleThroughPixels(view, 1, 1)) {
+      for (const SeenPoint& witness : oracle.visibleThroughPixels(view, 1, 1)) {
         found.insert(witness.object.value);
         EXPECT_TRUE(oracle.confirm(view, witness)) << "seed " << seed << " view " << i;
       }
@@ -144,7 +144,7 @@ TEST(ExactVisibility, AimedRaysClaimNothingThatBruteForceDenies) {
     }
     for (int i = 0; i < 10; ++i) {
       const View view = randomView(random);
-      for (const Witness& witness : oracle.visibleByAimedRays(view, all, 24)) {
+      for (const SeenPoint& witness : oracle.visibleByAimedRays(view, all, 24)) {
         const std::optional<std::set<std::uint32_t>> expected =
             seenAlong(scene, view, rayTo(view, witness.point));
         if (expected) {
@@ -167,7 +167,7 @@ TEST(ExactVisibility, AimedRaysReachWhatPixelsSee) {
   for (int i = 0; i < 10; ++i) {
     const View view = randomView(random);
     std::vector<ObjectId> seen;
-    for (const Witness& witness : oracle.visibleThroughPixels(view, 100, 100)) {
+    for (const SeenPoint& witness : oracle.visibleThroughPixels(view, 100, 100)) {
       seen.push_back(witness.object);
     }
     by_pixels += seen.size();

@@ -18,7 +18,7 @@ struct Fixture {
   std::vector<ObjectId> seen() const {
     const ExactVisibility oracle(scene.view());
     std::vector<ObjectId> ids;
-    for (const Witness& witness : oracle.visibleThroughPixels(view, 64, 64)) {
+    for (const SeenPoint& witness : oracle.visibleThroughPixels(view, 64, 64)) {
       ids.push_back(witness.object);
       EXPECT_TRUE(oracle.confirm(view, witness)) << "object " << witness.object.value;
     }
@@ -30,7 +30,7 @@ struct Fixture {
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
       all.push_back(ObjectId(o));
     }
-    for (const Witness& witness : oracle.visibleByAimedRays(view, all, samples)) {
+    for (const SeenPoint& witness : oracle.visibleByAimedRays(view, all, samples)) {
       ids.push_back(witness.object);
       EXPECT_TRUE(oracle.confirm(view, witness)) << "object " << witness.object.value;
     }
@@ -189,7 +189,7 @@ TEST(ExactVisibility, PixelsShowingAnObjectAreAllOfThem) {
   Fixture f;
   addWall(f.scene, addMaterial(f.scene, Opacity::kOpaque, false), -10, -5, 5, -5, 5);
   const ExactVisibility oracle(f.scene.view());
-  const std::vector<Witness> pixels = oracle.pixelsShowing(kFirst, f.view, 40, 40);
+  const std::vector<SeenPoint> pixels = oracle.pixelsShowing(kFirst, f.view, 40, 40);
   EXPECT_EQ(pixels.size(), 400u);
   EXPECT_EQ(pixels.front(), oracle.visibleThroughPixels(f.view, 40, 40).front());
 }
@@ -205,7 +205,7 @@ TEST(ExactVisibility, AnEdgeSharedByTrianglesIsNoGapForConfirm) {
   for (int i = 1; i < 1000; ++i) {
     const float s = static_cast<float>(i) / 1000.0f;
     const Vec3d on_diagonal(-1.1f + s * 2.4f, -1.7f + s * 3.6f, -3.0);
-    const Witness behind{kSecond, on_diagonal * (50.0 / 3.0)};
+    const SeenPoint behind{kSecond, on_diagonal * (50.0 / 3.0)};
     EXPECT_FALSE(oracle.confirm(f.view, behind)) << i;
   }
 }

@@ -18,9 +18,9 @@ constexpr std::uint32_t kWidth = 320, kHeight = 180;
 // Pixels on edges, where the two may round differently.
 constexpr std::uint64_t kFewPixels = kWidth * kHeight / 10'000;
 
-std::vector<ObjectId> objectsOf(const std::vector<Witness>& witnesses) {
+std::vector<ObjectId> objectsOf(const std::vector<SeenPoint>& witnesses) {
   std::vector<ObjectId> objects;
-  for (const Witness& witness : witnesses) {
+  for (const SeenPoint& witness : witnesses) {
     objects.push_back(witness.object);
   }
   return objects;
@@ -41,7 +41,7 @@ TEST(ExactVisibility, ItsObjectsMakeTheWholePictureAndEachIsNeeded) {
     const CameraPath& path = scene->paths.front();
     for (std::size_t frame = 0; frame < path.frames.size(); frame += 100) {
       const View view = path.view(frame, scene->origin);
-      const std::vector<Witness> seen = oracle.visibleThroughPixels(view, kWidth, kHeight);
+      const std::vector<SeenPoint> seen = oracle.visibleThroughPixels(view, kWidth, kHeight);
       const std::vector<ObjectId> exact = objectsOf(seen);
       const Image picture = renderer->draw(view, exact);
       EXPECT_LE(compareImages(renderer->draw(view, all), picture).pixels, kFewPixels)

@@ -181,11 +181,11 @@ class BakeJudge {
       }
     }
     hidden += missing.size();
-    std::vector<Witness> witnesses = exact_.visibleThroughPixels(view, 48, 48);
+    std::vector<SeenPoint> witnesses = exact_.visibleThroughPixels(view, 48, 48);
     seen += witnesses.size();
-    const std::vector<Witness> aimed = exact_.visibleByAimedRays(view, missing, 6);
+    const std::vector<SeenPoint> aimed = exact_.visibleByAimedRays(view, missing, 6);
     witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
-    for (const Witness& witness : witnesses) {
+    for (const SeenPoint& witness : witnesses) {
       if (!members[witness.object.value] && exact_.confirm(view, witness)) {
         ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
                       << witness.point.y << " " << witness.point.z << " from " << eye.x << " " << eye.y << " "

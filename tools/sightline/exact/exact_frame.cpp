@@ -33,7 +33,7 @@ class FrameSearch {
   }
 
   // Notes what rays have reached, if exact arithmetic confirms it.
-  void note(const std::vector<Witness>& witnesses, SeenBy by) {
+  void note(const std::vector<SeenPoint>& witnesses, SeenBy by) {
     std::vector<std::uint8_t> confirmed(witnesses.size());
     parallel_for_(static_cast<std::uint32_t>(witnesses.size()), [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {

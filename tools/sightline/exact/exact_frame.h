@@ -29,7 +29,7 @@ enum class SeenBy : std::uint8_t { kPixel, kAimedRay, kGap };
 std::string nameOf(SeenBy by);
 
 struct Sighting {
-  Witness witness{};  // exact arithmetic confirms it
+  SeenPoint witness{};  // exact arithmetic confirms it
   SeenBy by = SeenBy::kPixel;
 };
 
