@@ -311,7 +311,7 @@ class FirstBaker {
   void fail(const Error& error) {
     if (world_.size() > 1) {
       printNote("{}", error.message);
-      world_.abort(2);
+      world_.abort(kBadUsage);
     }
   }
 

@@ -20,7 +20,7 @@
 #include <utility>
 
 #define XXH_INLINE_ALL
-#include <xxhash.h>
+#include "src/pvs/format/checksum.h"
 
 namespace sightline::tool {
 namespace {
@@ -46,11 +46,15 @@ struct RecordHead {
 static_assert(sizeof(RecordHead) == 40);
 
 std::uint64_t checksumOf(const RecordHead& head) {
-  return XXH3_64bits(&head, offsetof(RecordHead, head_checksum));
+  return pvs::checksumOf(std::as_bytes(std::span(&head, 1)).first(offsetof(RecordHead, head_checksum)));
+}
+
+std::uint64_t checksumOf(const BakedPart& bytes) {
+  return pvs::checksumOf(std::as_bytes(std::span(bytes)));
 }
 
 RecordHead headOf(std::uint64_t part, const BakedPart& bytes) {
-  RecordHead head{{}, part, bytes.size(), XXH3_64bits(bytes.data(), bytes.size()), 0};
+  RecordHead head{{}, part, bytes.size(), checksumOf(bytes), 0};
   std::memcpy(head.mark, kMark.data(), sizeof(head.mark));
   head.head_checksum = checksumOf(head);
   return head;
@@ -243,7 +247,7 @@ Result<std::uint64_t> Checkpoint::gather(std::uint64_t size, KeptParts& kept) {
       return failure("cannot be read");
     }
     const std::uint64_t record = sizeof(*head) + head->length;
-    if (XXH3_64bits(bytes.data(), bytes.size()) != head->bytes_checksum) {
+    if (checksumOf(bytes) != head->bytes_checksum) {
       kept.unreadable += 1;
       kept.damaged = true;
     } else {
@@ -279,7 +283,7 @@ std::optional<BakedPart> Checkpoint::read(std::uint64_t part) const {
   }
   BakedPart bytes(static_cast<std::size_t>(head->length));
   const bool whole = readAt(descriptor_, place->second.offset + sizeof(*head), bytes.data(), bytes.size()) &&
-                     XXH3_64bits(bytes.data(), bytes.size()) == head->bytes_checksum;
+                     checksumOf(bytes) == head->bytes_checksum;
   return whole ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
