@@ -61,6 +61,12 @@ void noteMissingMaterials(const ObjFindings& findings, Result<Scene>& scene) {
                   named(findings.missing_materials), one ? "it hides" : "they hide", what)));
 }
 
+// Whether bytes begin as a binary glTF does, or as JSON after white space and a mark of UTF-8.
+bool mayBeGltf(std::string_view bytes) {
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return bytes.starts_with("glTF") || (first != std::string_view::npos && bytes[first] == '{');
+}
+
 }  // namespace
 
 Result<Scene> importScene(const std::string& file) {
@@ -76,6 +82,9 @@ Result<Scene> importScene(const std::string& file) {
   }
   if (bytes->empty()) {
     return failure("{}: the file is empty", file);
+  }
+  if (extension == ".glb" && !mayBeGltf(*bytes)) {
+    return failure("{}: is not a binary glTF: it does not begin with 'glTF'", file);
   }
   if (is_gltf) {
     const std::string folder = path.parent_path().string();

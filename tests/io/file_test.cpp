@@ -116,6 +116,19 @@ TEST_F(Files, ScenesOfUnknownKindAreRefused) {
   }
 }
 
+TEST_F(Files, AGlbThatIsNeitherBinaryGltfNorJsonIsSaidToBeNone) {
+  for (const char* bytes : {"PK\3\4", "gltf", " ", "\xff\xfe{"}) {
+    EXPECT_EQ(importScene(folder.write("a.glb", bytes)).error().message,
+              path("a.glb") + ": is not a binary glTF: it does not begin with 'glTF'");
+  }
+  for (const char* bytes : {"{}", "\xef\xbb\xbf {}", "glTF"}) {
+    const std::string message = importScene(folder.write("A.GLB", bytes)).error().message;
+    EXPECT_EQ(message.find("is not a binary glTF"), std::string::npos) << message;
+  }
+  EXPECT_NE(importScene(folder.write("a.gltf", "PK")).error().message.find("is not valid JSON"),
+            std::string::npos);
+}
+
 constexpr const char* kObj =
     "mtllib a.mtl\n"
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\n"

@@ -234,6 +234,8 @@ TEST(SightFile, RefusesAnotherScene) {
   for (const char* part : {"made.sight", "1,234 objects", "14,808 triangles", "5,000,001 objects", "bake"}) {
     EXPECT_NE(counts.find(part), std::string::npos) << counts;
   }
+  other.objects = other.triangles = 1;
+  EXPECT_NE(errorOf(file->matches(other)).find("1 object and 1 triangle:"), std::string::npos);
   other = baked.scene;
   other.hash ^= 1;
   EXPECT_TRUE(oneLine(errorOf(file->matches(other))));

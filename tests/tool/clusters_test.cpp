@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <string>
+
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 
@@ -45,8 +48,9 @@ TEST(Clusters, OfAnObjectThatIsPartlyHiddenAreCulledAlone) {
   expectDocumented(cut, {"cull"});
   const Outcome text = runTool(wall.command("cull", "1"));
   EXPECT_NE(text.out.find("--clusters 1"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("visible clusters           3.0 of 4"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("visible objects            2.0 of 2"), std::string::npos) << text.out;
+  const std::string numbers = std::regex_replace(text.out, std::regex(" +"), " ");
+  EXPECT_NE(numbers.find("visible clusters 3.0 of 4"), std::string::npos) << text.out;
+  EXPECT_NE(numbers.find("visible objects 2.0 of 2"), std::string::npos) << text.out;
 }
 
 TEST(Clusters, AreProvedHiddenOneByOne) {

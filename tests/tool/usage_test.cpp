@@ -10,6 +10,7 @@ TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
   expectRefused({"cull"}, "SCENE");
   expectRefused({"cull", kCity, "--bogus"}, "--bogus");
   expectRefused({"cull", kCity, "--threads"}, "--threads");
+  expectRefused({"cull", kCity, "demo:ship"}, "cull takes one SCENE; 'demo:ship' is one word too many");
   expectRefused({"walk", kCity}, "--output");
 }
 

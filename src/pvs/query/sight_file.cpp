@@ -29,8 +29,12 @@ std::string withCommas(std::uint64_t number) {
   return text;
 }
 
+std::string counted(std::uint64_t number, const char* noun) {
+  return withCommas(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
 std::string countsOf(const SceneId& scene) {
-  return withCommas(scene.objects) + " objects and " + withCommas(scene.triangles) + " triangles";
+  return counted(scene.objects, "object") + " and " + counted(scene.triangles, "triangle");
 }
 
 Error brokenSet(const std::string& file, std::uint32_t set) {

@@ -45,6 +45,11 @@ Error noSuchCommand(const CLI::App& app, const std::string& word) {
                            didYouMean(word, names))};
 }
 
+bool takesOneScene(const CLI::App& command) {
+  const CLI::Option* const scene = command.get_option_no_throw("SCENE");
+  return scene != nullptr && scene->get_items_expected_max() == 1;
+}
+
 // Why words were refused. An option that does not exist comes first: what else is wrong often follows from
 // it.
 Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
@@ -56,6 +61,12 @@ Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
       const std::string name = word.substr(0, word.find('='));
       return Error{fmt::format("there is no option {}{} (see {})", name,
                                didYouMean(name, allSpellings(command)), see)};
+    }
+  }
+  for (const std::string& word : app.remaining(true)) {
+    if (takesOneScene(command) && word.substr(0, 1) != "-") {
+      return Error{fmt::format("{} takes one SCENE; '{}' is one word too many (see {})", command.get_name(),
+                               word, see)};
     }
   }
   return Error{fmt::format("{} (see {})", error.what(), see)};

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/progress_bar.h"
@@ -62,6 +66,23 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const Clustering&
   return dump(json);
 }
 
+struct PrintedMean {
+  std::string_view caption;
+  double value = 0.0;
+  std::string after{};  // the unit, or what it is a part of
+};
+
+// Prints one line each, with the numbers below each other.
+void print(const std::vector<PrintedMean>& means) {
+  std::size_t width = 0;
+  for (const PrintedMean& mean : means) {
+    width = std::max(width, mean.caption.size());
+  }
+  for (const PrintedMean& mean : means) {
+    fmt::print("  {:<{}} {:12.1f}{}\n", mean.caption, width, mean.value, mean.after);
+  }
+}
+
 void print(const Setting& setting, const CullingData& data, const SceneAndWalk& input, const Totals& sum) {
   if (setting.choice != nullptr) {
     fmt::print("{}\n", choiceText({setting}));
@@ -69,20 +90,27 @@ void print(const Setting& setting, const CullingData& data, const SceneAndWalk& 
   const double n = static_cast<double>(input.walk.frames.size());
   fmt::print("{} ({}){}{}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
              crackText(input.closing.note()), clustersText(input.clustering), input.walk.frames.size());
+  std::vector<PrintedMean> means;
   if (input.clustering.on()) {
-    fmt::print("  visible clusters  {:12.1f} of {}\n", sum.clusters / n, data.bounds().size());
+    means.push_back({"visible clusters", sum.clusters / n, fmt::format(" of {}", data.bounds().size())});
   }
-  fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n,
-             input.clustering.on() ? input.clustering.objects : data.bounds().size());
-  fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
-  fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);
-  fmt::print("  nodes tested      {:12.1f} ({:.1f} % of the hierarchy)\n", sum.nodes_tested / n,
-             100.0 * sum.tested_share / n);
-  fmt::print("  occluders         {:12.1f}\n", sum.occluders / n);
+  means.push_back(
+      {"visible objects", sum.objects / n,
+       fmt::format(" of {}", input.clustering.on() ? input.clustering.objects : data.bounds().size())});
+  means.push_back({"their triangles", sum.triangles / n});
+  means.push_back({"cull time", sum.cull_us / n, " us"});
+  means.push_back({"nodes tested", sum.nodes_tested / n,
+                   fmt::format(" ({:.1f} % of the hierarchy)", 100.0 * sum.tested_share / n)});
+  if (setting.choosesOccluders()) {
+    means.push_back({"occluders", sum.occluders / n});
+  }
   const std::vector<Statistic> statistics = statisticsOf(setting);
   for (std::size_t i = 0; i < statistics.size(); ++i) {
-    fmt::print("  {:<18}{:12.1f}\n", statistics[i].caption, sum.statistics[i] / n);
+    if (statistics[i].shown) {
+      means.push_back({statistics[i].caption, sum.statistics[i] / n});
+    }
   }
+  print(means);
 }
 
 Status checkSingle(const Result<std::vector<Setting>>& settings) {

@@ -8,6 +8,7 @@ namespace sightline::tool {
 namespace {
 
 constexpr std::string_view kSets = "sets";
+constexpr std::string_view kHiddenOccluders = "occluders_hidden";
 
 // The culler's own statistics of potentially visible sets.
 std::uint64_t ofSets(std::string_view name, const CullStats& stats) {
@@ -29,7 +30,11 @@ std::vector<Statistic> statisticsOf(const Setting& setting) {
   const std::unique_ptr<CullingMethod> method = makeMethod(setting);
   for (const MethodStatistic& statistic : method->statistics()) {
     if (std::find(hidden.begin(), hidden.end(), statistic.group) == hidden.end()) {
-      chosen.push_back({statistic.group, statistic.name, statistic.caption});
+      const bool of_occluders = statistic.name == kHiddenOccluders;
+      chosen.push_back({.group = statistic.group,
+                        .name = statistic.name,
+                        .caption = statistic.caption,
+                        .shown = !of_occluders || setting.choosesOccluders()});
     }
   }
   return chosen;

@@ -15,6 +15,7 @@ struct Statistic {
   const char* name;     // "reused": its key in there
   const char* caption;  // "relations reused"
   bool time = false;    // differs from run to run
+  bool shown = true;    // in texts; false: in JSON alone, where it is always 0
 };
 
 // Returns the statistics that apply to the setting: those of its sets, and those of its method but for the

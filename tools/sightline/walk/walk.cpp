@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,14 +31,12 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kEverythingEvery =
-    10;  // frames: so often the baseline is compared with all objects drawn
+// The baseline is compared with all objects drawn after so many frames each.
+constexpr std::size_t kEverythingEvery = 10;
 
 // Files in the report's folder, beside the pictures of frames.
 constexpr const char* kJsonFile = "walk.json";
-constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
-                                                "nodes_tested.svg"};
-constexpr std::size_t kFrameTimePlot = 1;  // made only if something was drawn
+
 // The names of the files in the report's folder. frames are those that get pictures, if they are known
 // already; each run may add one picture for each frame that differs.
 std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
@@ -183,13 +180,11 @@ class Walker {
   std::vector<Image> images_;  // the current frame's picture of each run
 };
 
-Status writePlots(const Report& report, const std::string& folder) {
-  std::size_t file = 0;
-  for (const Plot& plot : report.plots) {
-    if (const Status ok = writeFile(folder + "/" + kPlotFiles[file], toSvg(plot)); !ok) {
+Status writePlots(const std::vector<WalkPlot>& plots, const std::string& folder) {
+  for (const WalkPlot& made : plots) {
+    if (const Status ok = writeFile(folder + "/" + made.file, toSvg(made.plot)); !ok) {
       return ok;
     }
-    file += file + 1 == kFrameTimePlot && !report.drawn ? 2 : 1;
   }
   return Success{};
 }
@@ -207,9 +202,9 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
   Report report = walkReport(input, record, std::move(*pictures));
   report.command = options.command_line;
   const std::string json = walkJson(input, record);
-  for (const Status& status :
-       {writePlots(report, options.folder), writeOutput(options.folder + "/" + kJsonFile, json),
-        writeReport(report, options.folder), writeOutput(options.common.json, json)}) {
+  for (const Status& status : {writePlots(walkPlots(record, input.walk), options.folder),
+                               writeOutput(options.folder + "/" + kJsonFile, json),
+                               writeReport(report, options.folder), writeOutput(options.common.json, json)}) {
     if (!status) {
       return status;
     }

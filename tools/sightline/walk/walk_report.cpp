@@ -232,22 +232,35 @@ std::string statisticsText(const WalkRun& run) {
                   methodName(run.setting), optionsText(run.setting), 100.0 * run.mean(testedShareOf(run)));
   const char* separator = "; ";
   for (std::size_t i = 0; i < run.statistics.size(); ++i) {
-    const char* caption = run.statistics[i].caption;
-    text += fmt::format("{}{} {:.1f}", separator, caption, run.mean(statisticAt(i)));
-    separator = ", ";
+    if (run.statistics[i].shown) {
+      text += fmt::format("{}{} {:.1f}", separator, run.statistics[i].caption, run.mean(statisticAt(i)));
+      separator = ", ";
+    }
   }
   return text;
 }
 
-std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk) {
-  std::vector<Plot> plots{plotOf(record, walk, "Triangles drawn", "triangles", true, trianglesDrawn)};
+std::vector<WalkPlot> walkPlots(const WalkRecord& record, const Walk& walk) {
+  const auto& [triangles, frame_time, cull_time, nodes_tested] = kPlotFiles;
+  std::vector<WalkPlot> plots{
+      {plotOf(record, walk, "Triangles drawn", "triangles", true, trianglesDrawn), triangles}};
   if (!record.device.empty()) {
-    plots.push_back(plotOf(record, walk, "Frame time: culling and drawing", "ms", true, frameMs));
+    plots.push_back(
+        {plotOf(record, walk, "Frame time: culling and drawing", "ms", true, frameMs), frame_time});
   }
-  plots.push_back(plotOf(record, walk, "Cull time", "ms", true, cullMs));
+  plots.push_back({plotOf(record, walk, "Cull time", "ms", true, cullMs), cull_time});
   if (record.runs.size() > 1) {
     plots.push_back(
-        plotOf(record, walk, "Nodes asked of the occlusion structure", "nodes", false, nodesTested));
+        {plotOf(record, walk, "Nodes asked of the occlusion structure", "nodes", false, nodesTested),
+         nodes_tested});
+  }
+  return plots;
+}
+
+std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk) {
+  std::vector<Plot> plots;
+  for (WalkPlot& made : walkPlots(record, walk)) {
+    plots.push_back(std::move(made.plot));
   }
   return plots;
 }

@@ -2,8 +2,10 @@
 
 // Writes a walk's results as JSON, as a table for the terminal, and as the report.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "tools/sightline/report/report.h"
 #include "tools/sightline/walk/walk_record.h"
@@ -22,8 +24,16 @@ struct WalkInput {
 ReportRow rowOf(const WalkRun& run, const WalkRecord& record);
 // A sentence with the share of the hierarchy that is tested and the setting's statistics (statisticsOf).
 std::string statisticsText(const WalkRun& run);
+// A plot, and its file in the report's folder, one of kPlotFiles.
+struct WalkPlot {
+  Plot plot{};
+  const char* file = "";
+};
+inline constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
+                                                       "nodes_tested.svg"};
 // Plots of the runs, with one value for each frame.
-std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk);
+std::vector<WalkPlot> walkPlots(const WalkRecord& record, const Walk& walk);
+std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk);  // the same without their files
 // Facts about the scene, the walk, and what was built for them.
 std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& record);
 
