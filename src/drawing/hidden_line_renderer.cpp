@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "sightline/drawing/drawing.h"
 #include "src/base/rows.h"
@@ -56,123 +57,123 @@ std::uint64_t countStrokes(const Drawing& drawing) {
 struct HiddenLineRenderer::Impl {
   explicit Impl(const SceneView& of) : edges(of) {}
 
+  // The arguments and the results so far of one call of paint() or plot().
+  struct Frame {
+    const SceneView& scene;
+    std::span<const std::string> names;
+    const View& view;
+    const DrawingSettings& settings;
+    Drawing drawing{};
+    double tolerance = settings.page_height * kToleranceShare;
+    std::vector<std::optional<std::vector<GridPath>>> outlines{};  // one for each object, of those asked for
+    std::vector<bool> shows{};                     // one for each object: whether it may show something
+    std::uint64_t objects = 0, objects_drawn = 0;  // objects of the order that may show something
+
+    bool mayShow(ObjectId object) const { return object.value < shows.size() && shows[object.value]; }
+    // The objects of these parts that may show something.
+    std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
+    void tellProgress();  // called after each object
+  };
+
   // Prepares a drawing. False if nothing can be drawn.
-  bool begin(const SceneView& scene, std::span<const std::string> names, const View& view,
-             const DrawingSettings& settings, Drawing& drawing);
+  bool begin(Frame& frame);
   // The object with its name and its strokes: the parts of its lines that neither it nor the occluders hide,
   // without the pieces in `before`.
-  DrawingObject drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing);
-  void drawOutline(DrawingObject& object);
-  const LayerOrder& seenFirst(const LayerOrder& order);
-  const std::vector<GridPath>& gridOutlineOf(ObjectId object);
-  void tellProgress();  // called after each object
-  // The objects of these parts that may show something.
-  std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
-  bool mayShow(ObjectId object) const { return object.value < shows.size() && shows[object.value]; }
+  DrawingObject drawLines(Frame& frame, ObjectId object, DrawnPieces* before);
+  void drawOutline(Frame& frame, DrawingObject& object);
+  const LayerOrder& seenFirst(Frame& frame, const LayerOrder& order);
+  const std::vector<GridPath>& gridOutlineOf(Frame& frame, ObjectId object);
 
   FeatureEdges edges;
+  // Memory that is used again.
   HiddenLines hidden;
   Outliner outliner;
   SeenOrder seen_order;
   std::vector<FeatureLine> lines;
   std::vector<LinePiece> pieces;
-  std::vector<ObjectId> occluders;
-
-  // State of the drawing that is being made.
-  SceneView scene;
-  std::span<const std::string> names;
-  View view;
-  const DrawingSettings* settings = nullptr;
-  double tolerance = 0.0;
-  std::vector<std::optional<std::vector<GridPath>>> outlines;  // one for each object, of those asked for
-  std::vector<bool> shows;                       // one for each object: whether it may show something
-  std::uint64_t objects = 0, objects_drawn = 0;  // objects of the order that may show something
+  std::vector<ObjectId> occluders;  // of the object whose lines are drawn next
 };
 
-bool HiddenLineRenderer::Impl::begin(const SceneView& scene_in, std::span<const std::string> names_in,
-                                     const View& view_in, const DrawingSettings& settings_in,
-                                     Drawing& drawing) {
-  if (!isDrawable(view_in, settings_in.page_height)) {
+void HiddenLineRenderer::Impl::Frame::tellProgress() {
+  ++objects_drawn;
+  if (settings.progress) {
+    settings.progress(static_cast<double>(objects_drawn) / static_cast<double>(objects));
+  }
+}
+
+bool HiddenLineRenderer::Impl::begin(Frame& frame) {
+  const double height = frame.settings.page_height;
+  if (!isDrawable(frame.view, height)) {
     return false;
   }
-  scene = scene_in;
-  names = names_in;
-  view = view_in;
-  settings = &settings_in;
-  objects_drawn = 0;
-  tolerance = settings_in.page_height * kToleranceShare;
-  drawing.height = settings_in.page_height;
-  drawing.width = settings_in.page_height * view.aspect;
-  hidden.setView(scene, view, settings_in.page_height);
-  outliner.setView(view, settings_in.page_height);
-  outlines.assign(scene.objects.size(), {});
-  shows.resize(scene.objects.size());
-  for (std::size_t i = 0; i < shows.size(); ++i) {
-    shows[i] = outliner.mayShow(scene, ObjectId(i));
+  frame.drawing.height = height;
+  frame.drawing.width = height * frame.view.aspect;
+  hidden.setView(frame.scene, frame.view, height);
+  outliner.setView(frame.view, height);
+  frame.outlines.resize(frame.scene.objects.size());
+  frame.shows.resize(frame.scene.objects.size());
+  for (std::size_t i = 0; i < frame.shows.size(); ++i) {
+    frame.shows[i] = outliner.mayShow(frame.scene, ObjectId(i));
   }
   return true;
 }
 
-DrawingObject HiddenLineRenderer::Impl::drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing) {
+DrawingObject HiddenLineRenderer::Impl::drawLines(Frame& frame, ObjectId object, DrawnPieces* before) {
+  const std::span<const std::string> names = frame.names;
   DrawingObject drawn{.object = object,
                       .name = object.value < names.size() ? names[object.value] : std::string()};
   occluders.push_back(object);
-  std::erase_if(occluders, [&](ObjectId id) { return !mayShow(id); });
+  std::erase_if(occluders, [&](ObjectId id) { return !frame.mayShow(id); });
   std::sort(occluders.begin(), occluders.end());
   occluders.erase(std::unique(occluders.begin(), occluders.end()), occluders.end());
-  edges.select(scene, object, view, settings->features, lines);
+  edges.select(frame.scene, object, frame.view, frame.settings.features, lines);
   pieces.clear();
   hidden.visiblePieces(lines, occluders, pieces);
   if (before != nullptr) {
     before->leaveNew(pieces);
   }
-  joinPieces(pieces, tolerance, drawn.strokes);
-  drawing.pairs += lines.size() * occluders.size();
-  drawing.all_pairs += lines.size() * objects;
+  joinPieces(pieces, frame.tolerance, drawn.strokes);
+  frame.drawing.pairs += lines.size() * occluders.size();
+  frame.drawing.all_pairs += lines.size() * frame.objects;
   return drawn;
 }
 
-void HiddenLineRenderer::Impl::tellProgress() {
-  ++objects_drawn;
-  if (settings->progress) {
-    settings->progress(static_cast<double>(objects_drawn) / static_cast<double>(objects));
-  }
-}
-
-void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
+void HiddenLineRenderer::Impl::drawOutline(Frame& frame, DrawingObject& object) {
+  const SceneView& scene = frame.scene;
   if (!scene.materialOf(scene.objects[object.object.value]).opaque()) {
     return;
   }
-  outliner.toPage(gridOutlineOf(object.object), object.outline);
-  outlines[object.object.value].reset();  // each object is drawn once
+  outliner.toPage(gridOutlineOf(frame, object.object), object.outline);
+  frame.outlines[object.object.value].reset();  // each object is drawn once
   for (PagePath& ring : object.outline) {
     // Closing the line lets the last edge be simplified too.
     ring.push_back(ring.front());
-    simplify(ring, tolerance);
+    simplify(ring, frame.tolerance);
     ring.pop_back();
   }
   std::erase_if(object.outline, [](const PagePath& ring) { return ring.size() < 3; });
 }
 
 // The outline of an opaque object that may show; empty for others.
-const std::vector<GridPath>& HiddenLineRenderer::Impl::gridOutlineOf(ObjectId object) {
-  std::optional<std::vector<GridPath>>& known = outlines[object.value];
+const std::vector<GridPath>& HiddenLineRenderer::Impl::gridOutlineOf(Frame& frame, ObjectId object) {
+  const SceneView& scene = frame.scene;
+  std::optional<std::vector<GridPath>>& known = frame.outlines[object.value];
   if (!known) {
     known.emplace();
-    if (mayShow(object) && scene.materialOf(scene.objects[object.value]).opaque()) {
+    if (frame.mayShow(object) && scene.materialOf(scene.objects[object.value]).opaque()) {
       outliner.outline(scene, object, *known);
     }
   }
   return *known;
 }
 
-const LayerOrder& HiddenLineRenderer::Impl::seenFirst(const LayerOrder& order) {
-  return seen_order.sort(scene, outliner, order, [this](ObjectId object) -> const std::vector<GridPath>& {
-    return gridOutlineOf(object);
+const LayerOrder& HiddenLineRenderer::Impl::seenFirst(Frame& frame, const LayerOrder& order) {
+  return seen_order.sort(frame.scene, outliner, order, [&](ObjectId object) -> const std::vector<GridPath>& {
+    return gridOutlineOf(frame, object);
   });
 }
 
-std::vector<ObjectId> HiddenLineRenderer::Impl::objectsOf(std::span<const PartId> parts) const {
+std::vector<ObjectId> HiddenLineRenderer::Impl::Frame::objectsOf(std::span<const PartId> parts) const {
   std::vector<ObjectId> ids;
   for (const PartId part : parts) {
     if (const ObjectId object(part.value); mayShow(object)) {
@@ -190,17 +191,18 @@ HiddenLineRenderer& HiddenLineRenderer::operator=(HiddenLineRenderer&&) noexcept
 Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::string> names,
                                   const View& view, const LayerOrder& given,
                                   const DrawingSettings& settings) {
-  Drawing drawing;
   Impl& own = *impl_;
-  if (!own.begin(scene, names, view, settings, drawing)) {
-    return drawing;
+  Impl::Frame frame{scene, names, view, settings};
+  Drawing& drawing = frame.drawing;
+  if (!own.begin(frame)) {
+    return std::move(drawing);
   }
-  const LayerOrder& order = settings.seen_first ? own.seenFirst(given) : given;
-  own.objects = own.objectsOf(order.parts).size();
+  const LayerOrder& order = settings.seen_first ? own.seenFirst(frame, given) : given;
+  frame.objects = frame.objectsOf(order.parts).size();
   const OccludersOf occluders_of(order.arcs, scene.objects.size());
   std::vector<std::size_t> group_of(scene.objects.size(), order.groups());
   for (std::size_t i = order.groups(); i-- > 0;) {
-    const std::vector<ObjectId> members = own.objectsOf(order.group(i));
+    const std::vector<ObjectId> members = frame.objectsOf(order.group(i));
     for (const ObjectId member : members) {
       group_of[member.value] = i;
     }
@@ -213,9 +215,9 @@ Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::s
           own.occluders.push_back(front);
         }
       }
-      DrawingObject object = own.drawLines(member, nullptr, drawing);
-      own.drawOutline(object);
-      own.tellProgress();
+      DrawingObject object = own.drawLines(frame, member, nullptr);
+      own.drawOutline(frame, object);
+      frame.tellProgress();
       if (!object.outline.empty() || !object.strokes.empty()) {
         group.objects.push_back(std::move(object));
       }
@@ -225,20 +227,21 @@ Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::s
     }
   }
   drawing.stats = own.hidden.stats();
-  return drawing;
+  return std::move(drawing);
 }
 
 Drawing HiddenLineRenderer::plot(const SceneView& scene, std::span<const std::string> names, const View& view,
                                  const LayerOrder& order, const DrawingSettings& settings) {
-  Drawing drawing;
   Impl& own = *impl_;
-  if (!own.begin(scene, names, view, settings, drawing)) {
-    return drawing;
+  Impl::Frame frame{scene, names, view, settings};
+  Drawing& drawing = frame.drawing;
+  if (!own.begin(frame)) {
+    return std::move(drawing);
   }
-  const std::vector<ObjectId> members = own.objectsOf(order.parts);
-  own.objects = members.size();
+  const std::vector<ObjectId> members = frame.objectsOf(order.parts);
+  frame.objects = members.size();
   const OccludersOf occluders_of(order.arcs, scene.objects.size());
-  DrawnPieces drawn(own.tolerance);
+  DrawnPieces drawn(frame.tolerance);
   for (auto member = members.rbegin(); member != members.rend(); ++member) {
     const auto& backdrops = settings.backdrops;
     if (std::find(backdrops.begin(), backdrops.end(), *member) != backdrops.end()) {
@@ -248,14 +251,14 @@ Drawing HiddenLineRenderer::plot(const SceneView& scene, std::span<const std::st
       own.occluders.assign(fronts.begin(), fronts.end());
       own.occluders.insert(own.occluders.end(), settings.overlays.begin(), settings.overlays.end());
     }
-    DrawingObject object = own.drawLines(*member, &drawn, drawing);
-    own.tellProgress();
+    DrawingObject object = own.drawLines(frame, *member, &drawn);
+    frame.tellProgress();
     if (!object.strokes.empty()) {
       drawing.groups.emplace_back().objects.push_back(std::move(object));
     }
   }
   drawing.stats = own.hidden.stats();
-  return drawing;
+  return std::move(drawing);
 }
 
 }  // namespace sightline
