@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,71 +17,23 @@
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/layers/layer_checks.h"
 #include "tools/sightline/layers/layer_drawings.h"
 #include "tools/sightline/layers/layer_eyes.h"
 #include "tools/sightline/layers/layer_frames.h"
 #include "tools/sightline/layers/layer_lens.h"
 #include "tools/sightline/layers/layer_line_picture.h"
 #include "tools/sightline/layers/layer_pictures.h"
-#include "tools/sightline/layers/layer_replacement.h"
 #include "tools/sightline/layers/layer_seen_arcs.h"
 #include "tools/sightline/layers/layer_sort_options.h"
 #include "tools/sightline/layers/layer_splitting.h"
 #include "tools/sightline/layers/layer_totals.h"
+#include "tools/sightline/layers/layers_options.h"
 
 namespace sightline::tool {
 namespace {
 
-struct LayersOptions {
-  SceneOptions common;
-  PathOptions path;
-  LayerPlaces places;
-  LayerDivision division;
-  std::uint32_t split_cycles = 0;  // pieces of parts in cycles, at most; 0: parts stay whole
-  std::string parts;               // a name of kPartChoices; empty: chosen by partChoiceOf()
-  LayerSortOptions sort;
-  LayerEyeOptions eyes;
-  std::string tints = "on";
-  bool no_times = false;
-  PictureOptions size;
-  std::uint32_t samples = 1;
-  LayerPictureOptions pictures;
-  LayerLensOptions lens;
-  LayerDrawingOptions drawings;
-};
-
 constexpr std::uint32_t kMaxSplitPieces = 100000;
-
-// Which parts --parts sorts.
-enum class PartChoice : std::uint8_t { kAll, kSeeThrough };
-constexpr std::array<Name<PartChoice>, 2> kPartChoices{{
-    {"all", PartChoice::kAll},
-    {"see-through", PartChoice::kSeeThrough},
-}};
-
-// The outputs for which each opaque part needs a layer of its own: their options, and what they were given.
-std::vector<std::pair<const char*, bool>> needOpaqueLayers(const LayersOptions& options) {
-  return {{"--replace", !options.pictures.replace.empty()},
-          {"--blurred", !options.lens.blurred.empty()},
-          {"--compare", !options.lens.compare.empty()},
-          {"--arcs seen", sortsBySeen(options.sort)},
-          {"--svg", !options.drawings.svg.empty()},
-          {"--pdf", !options.drawings.pdf.empty()},
-          {"--line-picture", !options.drawings.line_picture.empty()}};
-}
-
-// A picture needs only see-through parts in order, since the depth buffer takes care of the opaque ones.
-PartChoice partChoiceOf(const LayersOptions& options) {
-  if (!options.parts.empty()) {
-    return valueOf(kPartChoices, options.parts);
-  }
-  const auto needed = needOpaqueLayers(options);
-  const bool picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty();
-  return picture && options.pictures.layer_file.empty() &&
-                 std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
-             ? PartChoice::kSeeThrough
-             : PartChoice::kAll;
-}
 
 using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
 
@@ -331,137 +282,6 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   return kOk;
 }
 
-std::vector<NamedFile> outputsOf(const LayersOptions& options) {
-  return {{"--json", options.common.json},
-          {"--image", options.pictures.image, ".png"},
-          {"--layer-file", options.pictures.layer_file, ".exr"},
-          {"--by-distance", options.pictures.by_distance, ".png"},
-          {"--blurred", options.lens.blurred, ".png"},
-          {"--compare", options.lens.compare, ".png"},
-          {"--svg", options.drawings.svg, ".svg"},
-          {"--pdf", options.drawings.pdf, ".pdf"},
-          {"--line-picture", options.drawings.line_picture, ".png"}};
-}
-
-// frames: those whose pictures are read if --replace names a sequence; empty: not known yet.
-Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs,
-                    const std::vector<std::uint32_t>& frames = {}) {
-  std::vector<NamedFile> inputs = walkInputs(options.common.scene, options.path);
-  for (const std::string& replace : options.pictures.replace) {
-    const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
-    const std::string pattern = replace.substr(equals + 1);
-    inputs.push_back({"--replace", pattern});
-    for (const std::uint32_t frame : frames) {
-      inputs.push_back({"--replace", replacementFile(pattern, frame)});
-    }
-  }
-  return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
-}
-
-// Checks the files of each frame, whose names are known once the camera path has been read.
-Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::uint32_t>& frames) {
-  std::vector<NamedFile> outputs;
-  for (const NamedFile& output : outputsOf(options)) {
-    if (output.file.empty()) {
-      continue;
-    }
-    if (output.option == "--json") {
-      outputs.push_back(output);  // one file for all frames
-      continue;
-    }
-    for (const std::uint32_t frame : frames) {
-      outputs.push_back({output.option, frameFile(output.file, frame, frames.size() > 1), output.extension});
-    }
-  }
-  return checkFilesOf(options, outputs, frames);
-}
-
-Status checkPictureOptions(const LayersOptions& options) {
-  const bool any_picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty() ||
-                           !options.pictures.layer_file.empty() || !options.lens.blurred.empty() ||
-                           !options.lens.compare.empty();
-  const bool any_option = options.samples != 1 || options.tints != "on";
-  return any_picture || !any_option
-             ? Status(Success{})
-             : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
-}
-
-bool isDrawn(const LayersOptions& options) {
-  return !options.drawings.svg.empty() || !options.drawings.pdf.empty();
-}
-
-// What the pixels of one picture show says nothing of other eyes. Drawings have an order of their own, by
-// outlines.
-Status checkSeenArcs(const LayersOptions& options) {
-  const bool is_drawn = isDrawn(options);
-  const std::pair<const char*, bool> refused[] = {{"--blurred", !options.lens.blurred.empty()},
-                                                  {"--compare", !options.lens.compare.empty()},
-                                                  {"--order-for lens", options.eyes.order_for == "lens"},
-                                                  {"--stereo", options.eyes.stereo != 0.0}};
-  for (const auto& [option, given] : refused) {
-    if (sortsBySeen(options.sort) && given) {
-      return Error{fmt::format(
-          "--arcs seen: is an order of one picture's pixels, and {} needs more; leave one of the two out",
-          option)};
-    }
-  }
-  const std::pair<const char*, bool> by_pixels[] = {{"--image", !options.pictures.image.empty()},
-                                                    {"--layer-file", !options.pictures.layer_file.empty()},
-                                                    {"--by-distance", !options.pictures.by_distance.empty()},
-                                                    {"--plot", options.drawings.plot}};
-  for (const auto& [option, given] : by_pixels) {
-    if (sortsBySeen(options.sort) && is_drawn && given) {
-      return Error{
-          fmt::format("--arcs seen: is an order by outlines for --svg and --pdf, which {} does not take; "
-                      "leave one of the two out",
-                      option)};
-    }
-  }
-  return Success{};
-}
-
-// Pieces are drawn by pictures alone, and a sample of a pixel is in one piece only.
-Status checkSplitCycles(const LayersOptions& options) {
-  const std::pair<const char*, bool> refused[] = {{"--arcs seen", sortsBySeen(options.sort)},
-                                                  {"--exact off", !valueOf(kSwitch, options.sort.exact)},
-                                                  {"--order-for lens", options.eyes.order_for == "lens"},
-                                                  {"--samples", options.samples != 1},
-                                                  {"--blurred", !options.lens.blurred.empty()},
-                                                  {"--compare", !options.lens.compare.empty()},
-                                                  {"--svg", !options.drawings.svg.empty()},
-                                                  {"--pdf", !options.drawings.pdf.empty()},
-                                                  {"--line-picture", !options.drawings.line_picture.empty()}};
-  for (const auto& [option, given] : refused) {
-    if (options.split_cycles > 0 && given) {
-      return Error{fmt::format("--split-cycles: does not go with {}; leave one of the two out", option)};
-    }
-  }
-  return Success{};
-}
-
-// Drawings would show the cuts as lines.
-Status checkPreSplit(const LayersOptions& options) {
-  const std::pair<const char*, bool> refused[] = {{"--svg", !options.drawings.svg.empty()},
-                                                  {"--pdf", !options.drawings.pdf.empty()},
-                                                  {"--line-picture", !options.drawings.line_picture.empty()}};
-  for (const auto& [option, given] : refused) {
-    if (options.division.split_width > 0.0 && given) {
-      return Error{fmt::format("--pre-split: does not go with {}, which would draw the cuts", option)};
-    }
-  }
-  return Success{};
-}
-
-Status checkPartChoice(const LayersOptions& options) {
-  for (const auto& [option, given] : needOpaqueLayers(options)) {
-    if (given && partChoiceOf(options) == PartChoice::kSeeThrough) {
-      return Error{fmt::format(
-          "--parts see-through: draws opaque parts together, and {} needs a layer of each", option)};
-    }
-  }
-  return Success{};
-}
-
 // Lets the depth buffer take care of the opaque parts, except those that have a place already or that
 // --without names.
 void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
@@ -478,12 +298,8 @@ void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
 }
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  for (const Status& ok :
-       {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options), checkPartChoice(options),
-        checkSeenArcs(options), checkSplitCycles(options), checkPreSplit(options)}) {
-    if (!ok) {
-      return ok.error();
-    }
+  if (const Status ok = checkLayersOptions(options); !ok) {
+    return ok.error();
   }
   Result<LayerInput> input =
       loadLayerInput(options.common.scene, options.path, options.places, options.division);
@@ -507,11 +323,11 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .seen_first = sortsBySeen(options.sort),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
-  if (makers && !makers->empty()) {
-    keepWhenTold("pictures and drawings that were finished are kept, and no JSON is written");
-  }
   if (!makers) {
     return makers.error();
+  }
+  if (!makers->empty()) {
+    keepWhenTold("pictures and drawings that were finished are kept, and no JSON is written");
   }
   std::optional<SeenArcs> seen;
   if (sortsBySeen(options.sort) && !isDrawn(options)) {
