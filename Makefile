@@ -20,6 +20,7 @@ cpp_files = find include src scenes oracle tools bench fuzz tests examples -name
 help:
 	@echo "make demo                   walk the built-in city and building, then bake and walk them; reports with pictures"
 	@echo "make demo SCENE=path.glb    walk your own scene (CAMERA=path.json: along your own path)"
+	@echo "make demo SHORT=1           the same with few frames and larger cells"
 	@echo "make test                   build, then run all tests"
 	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
 	@echo "make gallery                all pictures of docs/gallery.md anew (FULL=1: with all frames of the paper's tables)"
@@ -49,6 +50,7 @@ test: setup
 bench: setup
 	@$(configure)
 	@$(build) --target benchmarks
+	@[ -x $(BUILD)/bench/drawings ] || echo "== without the benchmark drawings, which needs libgl2ps-dev"
 	@for program in $$(find $(BUILD)/bench -maxdepth 1 -type f -executable | sort); do \
 	  $$program $(if $(SHORT),--benchmark_min_time=0.05) || exit 1; \
 	done
