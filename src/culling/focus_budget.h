@@ -6,7 +6,7 @@
 
 namespace sightline::culling {
 
-// Says when a finer depth buffer pays, by counted work: 1 for an edge, as SurfaceDrawing::budget counts.
+// Says when a finer depth buffer pays, by counted work: 1 for an edge, as SurfaceLimits::budget counts.
 //
 // What a view costs on average for each object that it keeps, or a few edges' work, is the price of an
 // object. A window pays where its work, as of the last ones, is at most `worth` times the price of the

@@ -11,7 +11,7 @@ class TimedBudget {
   explicit TimedBudget(double frame_us) : frame_us_(frame_us) {}
 
   bool limits() const { return frame_us_ > 0.0; }
-  // As SurfaceDrawing::budget counts.
+  // As SurfaceLimits::budget counts.
   double work() const { return std::max(frame_us_ - rest_us_, 0.0) * (drawn_ / drawing_us_); }
 
   // Reports a frame: what was drawn first, how long building the frame's structure took, most of which is

@@ -15,19 +15,19 @@ namespace sightline::culling {
 class UsualWork {
  public:
   // Limits what is drawn in a view.
-  SurfaceDrawing limited(SurfaceDrawing drawing, bool jumped) const {
+  SurfaceLimits limited(SurfaceLimits limits, bool jumped) const {
     if (usual_ > 0.0) {
-      drawing.pixels_per_edge *= jumped ? kJumpedPixels : 1.0;
-      drawing.budget = static_cast<std::uint32_t>(
-          std::min<double>(drawing.budget, std::max(kLeastWork, kGrowth * usual_)));
+      limits.pixels_per_edge *= jumped ? kJumpedPixels : 1.0;
+      limits.budget =
+          static_cast<std::uint32_t>(std::min<double>(limits.budget, std::max(kLeastWork, kGrowth * usual_)));
     }
-    return drawing;
+    return limits;
   }
   // work: that was done in the view, SurfaceStats::work.
   void frame(double work) { usual_ += (work - usual_) / (usual_ > 0.0 ? kMemory : 1.0); }
 
  private:
-  static constexpr double kJumpedPixels = 32.0;  // times SurfaceDrawing::pixels_per_edge
+  static constexpr double kJumpedPixels = 32.0;  // times SurfaceLimits::pixels_per_edge
   static constexpr double kGrowth = 16.0, kLeastWork = 6000.0, kMemory = 8.0;  // views
 
   double usual_ = 0.0;  // of a view; 0: nothing has been drawn

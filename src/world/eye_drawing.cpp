@@ -208,7 +208,8 @@ void WorldEye::listAlone(const WorldData& data, const View& view, const SurfaceD
     const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
     // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
     const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
-    if (image.place != occlusion::BoxPlace::kOutside && !open && (near || pixels >= drawing.min_pixels)) {
+    if (image.place != occlusion::BoxPlace::kOutside && !open &&
+        (near || pixels >= drawing.limits.min_pixels)) {
       in_order_.push_back({alone_[i], false, near ? std::numeric_limits<float>::infinity() : image.nearest});
     }
   }
@@ -217,7 +218,7 @@ void WorldEye::listAlone(const WorldData& data, const View& view, const SurfaceD
 // Draws joins, and instances alone: in the order of alone_ where what was useful is drawn, else the nearest
 // ones first. Returns the work.
 std::uint32_t WorldEye::drawInOrder(const WorldData& data, const View& view, SurfaceDrawing drawing) {
-  const std::uint32_t budget = drawing.budget;
+  const std::uint32_t budget = drawing.limits.budget;
   in_order_.clear();
   listJoins(data, view);
   listAlone(data, view, drawing);
@@ -227,16 +228,16 @@ std::uint32_t WorldEye::drawInOrder(const WorldData& data, const View& view, Sur
     });
   }
   for (const Candidate& candidate : in_order_) {
-    if (drawing.budget == 0) {
+    if (drawing.limits.budget == 0) {
       break;
     }
     const SurfaceStats drawn = candidate.join ? drawJoin(data, candidate.number, drawing)
                                               : drawAlone(data, candidate.number, drawing);
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
     counts_.edges += drawn.edges;
-    drawing.budget -= std::min(drawing.budget, drawn.work);
+    drawing.limits.budget -= std::min(drawing.limits.budget, drawn.work);
   }
-  return budget - drawing.budget;
+  return budget - drawing.limits.budget;
 }
 
 SurfaceStats WorldEye::drawJoin(const WorldData& data, std::uint32_t join, const SurfaceDrawing& drawing) {

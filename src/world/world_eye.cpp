@@ -116,10 +116,10 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
     SurfaceDrawing drawing = whatIsLeft(ViewStep::kSame);
     drawing.draw_resting = culling::mostIsNew(news_.size(), shown_.size());
     if (!aims_.boxes().empty()) {
-      drawing.budget = aims_.aimAtShown(shown_, news_, work_, drawing.budget,
-                                        [&](InstanceId id) { return data.boxOf(id.value); });
+      drawing.limits.budget = aims_.aimAtShown(shown_, news_, work_, drawing.limits.budget,
+                                               [&](InstanceId id) { return data.boxOf(id.value); });
       drawing.targets = aims_.boxes();
-      if (drawing.budget > 0) {
+      if (drawing.limits.budget > 0) {
         if (const std::uint32_t work = draw(data, view, shown_, drawing); work > 0) {
           work_ += work;
           pyramid_.finish();
@@ -128,7 +128,7 @@ void WorldEye::drawFound(const WorldData& data, const View& view, bool jumped, c
       }
     } else if (culling::changesFast(news_.size(), shown_.size())) {
       // What comes into view is not counted in the budget.
-      drawing.budget = settings_.drawing.budget;
+      drawing.limits.budget = settings_.drawing.budget;
       draw(data, view, news_, drawing);
       pyramid_.finish();
       hidden_.begin(data);
@@ -147,10 +147,9 @@ void WorldEye::makeRoom(const WorldData& data) {
 
 // How surfaces are drawn with what is left of the frame's budget.
 SurfaceDrawing WorldEye::whatIsLeft(ViewStep step) const {
-  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
-  drawing.budget -= std::min(drawing.budget, work_);
-  drawing.step = step;
-  return drawing;
+  SurfaceLimits limits = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
+  limits.budget -= std::min(limits.budget, work_);
+  return {.limits = limits, .step = step};
 }
 
 // Sets found_ to what may be seen, of all or by the view's volume alone.
@@ -260,10 +259,8 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
       separate(data, join);
     }
   }
-  SurfaceDrawing drawing = settings_.drawing;
-  drawing.step = ViewStep::kJump;
   const bool nothing_between = shown_.empty() && data.unbounded.empty();
-  drawInOrder(data, view, drawing);
+  drawInOrder(data, view, {.limits = settings_.drawing, .step = ViewStep::kJump});
   pyramid_.finish();
   const Visibility visibility = pyramid_.classify(box);
   return visibility == Visibility::kVisible && !nothing_between ? Visibility::kPartial : visibility;

@@ -22,10 +22,7 @@ namespace sightline::world {
 
 class WorldEye {
  public:
-  explicit WorldEye(const WorldCullerSettings& settings) : settings_(settings), pyramid_({settings.raster}) {
-    settings_.drawing.targets = {};
-    settings_.drawing.useful_only = false;
-  }
+  explicit WorldEye(const WorldCullerSettings& settings) : settings_(settings), pyramid_({settings.raster}) {}
 
   // view_world: a usable one. last: what the last frame kept, as a list and as a set. Adds what may be seen
   // to kept, which is as large as the world, and to the counts of stats.

@@ -8,7 +8,7 @@ namespace {
 TEST(UsualWork, TheFirstViewIsNotLimitedBecauseNothingIsUsualYet) {
   const UsualWork usual;
   for (const bool jumped : {false, true}) {
-    const SurfaceDrawing asked{.pixels_per_edge = 4.0, .budget = 60000};
+    const SurfaceLimits asked{.pixels_per_edge = 4.0, .budget = 60000};
     EXPECT_EQ(usual.limited(asked, jumped).budget, asked.budget);
     EXPECT_EQ(usual.limited(asked, jumped).pixels_per_edge, asked.pixels_per_edge);
   }
@@ -45,7 +45,7 @@ TEST(UsualWork, TheLimitFollowsTheWorkOfTheLastViewsAndIsNeverTiny) {
 TEST(UsualWork, AfterAJumpOnlySurfacesWithFewEdgesForTheirSizeAreDrawn) {
   UsualWork usual;
   usual.frame(1000.0);
-  const SurfaceDrawing asked{.pixels_per_edge = 4.0};
+  const SurfaceLimits asked{.pixels_per_edge = 4.0};
   EXPECT_EQ(usual.limited(asked, false).pixels_per_edge, asked.pixels_per_edge);
   EXPECT_GT(usual.limited(asked, true).pixels_per_edge, asked.pixels_per_edge);
   EXPECT_EQ(usual.limited(asked, true).budget, usual.limited(asked, false).budget);

@@ -390,7 +390,8 @@ DepthBufferView draw(Rasteriser& rasteriser, const RandomCase& made, std::uint64
                                          .join_edges = random.below(2) == 0});
   rasteriser = Rasteriser({made.width(), made.height()});
   rasteriser.begin(made.view(), made.viewers());
-  const SurfaceDrawing all{.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0, .budget = ~0u};
+  const SurfaceDrawing all{
+      .limits = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0, .budget = ~0u}};
   if (made.moved()) {
     rasteriser.draw(MovingSurfaces{&surfaces, made.sceneFromSpace()}, surfaces.objects, all);
   } else {

@@ -218,7 +218,7 @@ TEST(SurfaceProbes, ABudgetThatRunsOutCoversLess) {
   SurfaceDrawing drawing = kDrawAll;
   std::size_t last = 0;
   for (const std::uint32_t budget : {0u, 1u, 100u, 400u, 1000u, 1'000'000u}) {
-    drawing.budget = budget;
+    drawing.limits.budget = budget;
     const ProvedPixels checked = drawAndProve(scene, frontView(), 40, 40, settings, drawing);
     EXPECT_TRUE(checked.right());
     EXPECT_GE(checked.covered, last);

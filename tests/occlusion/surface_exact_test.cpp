@@ -196,7 +196,7 @@ class DrawnCase {
     rasteriser_ = Rasteriser({static_cast<std::uint32_t>(c.width), static_cast<std::uint32_t>(c.height)});
     rasteriser_.begin(view_);
     rasteriser_.draw(surfaces_, surfaces_.objects,
-                     {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0});
+                     {.limits = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0}});
   }
   DepthBufferView buffer() const { return rasteriser_.depthBuffer(); }
 

@@ -36,7 +36,8 @@ struct ProvedPixels {
   bool right() const { return wrong + undecided == 0; }
 };
 
-inline constexpr SurfaceDrawing kDrawAll{.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0};
+inline constexpr SurfaceDrawing kDrawAll{
+    .limits = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0}};
 
 // Proves for each covered pixel, or for every so many of them, that what lies behind it is hidden.
 inline ProvedPixels provePixels(const Scene& scene, const View& view, const DepthBufferView& buffer,

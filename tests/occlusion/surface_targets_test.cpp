@@ -215,7 +215,7 @@ TEST_P(RandomSurfaceTargets, HideWhatTheyCoverWhereOnlySomeAreDrawn) {
     const std::uint32_t all = raster.surfaceStats().groups;
     aim();
     drawing.targets = targets;
-    drawing.pixels_per_edge = number(0.0, 2.0);
+    drawing.limits.pixels_per_edge = number(0.0, 2.0);
     raster.begin(view);
     raster.draw(surfaces, surfaces.objects, drawing);
     fewer += raster.surfaceStats().groups < all ? 1 : 0;

@@ -38,7 +38,7 @@ struct AnySettings {
   RasterSettings raster{};
   FocusSettings focus{};
   SurfaceUse surfaces = SurfaceUse::kNone;
-  SurfaceDrawing drawing{};
+  SurfaceLimits drawing{};
   bool temporal_coherence = true;
   std::uint32_t occluder_count = 64;
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;

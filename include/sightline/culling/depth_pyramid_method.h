@@ -33,8 +33,7 @@ struct DepthPyramidMethodSettings {
   // six to nine frames.
   bool temporal_coherence = true;
   SurfaceUse surfaces = SurfaceUse::kAlone;
-  // How surfaces are drawn; `step`, `targets` and `useful_only` are set anew in each frame.
-  SurfaceDrawing drawing{};
+  SurfaceLimits drawing{};  // of surfaces
   // More than 0: so many surfaces are drawn that a frame takes about so many microseconds, as far as drawing
   // less can do that, at most those of drawing.budget. Then what is kept, always conservative, depends on
   // measured times.

@@ -18,9 +18,8 @@ struct OpacityMapMethodSettings {
   // Until it is known, the coverage ratio stays. Outlives the method; null: triangle_us counts.
   const MeasuredRenderer* renderer = nullptr;
   SurfaceUse surfaces = SurfaceUse::kNone;
-  // How surfaces are drawn; `step`, `targets` and `useful_only` are set anew in each frame.
-  SurfaceDrawing drawing{};
-  double budget_us = 0.0;  // see DepthPyramidMethodSettings
+  SurfaceLimits drawing{};  // of surfaces
+  double budget_us = 0.0;   // see DepthPyramidMethodSettings
 };
 
 inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};

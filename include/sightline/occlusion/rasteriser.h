@@ -71,8 +71,8 @@ enum class ViewStep : std::uint8_t {
   kSame,  // it is the same view: what is drawn in it is not drawn again
 };
 
-// How surfaces are drawn. Whatever the values are, what is covered is hidden.
-struct SurfaceDrawing {
+// Which surfaces are worth drawing, and how many. Whatever the values are, what is covered is hidden.
+struct SurfaceLimits {
   double min_pixels = 100.0;        // parts whose rectangle in the buffer has fewer pixels are left out
   double min_patch_pixels = 150.0;  // patches with fewer are drawn only together with the rest of their part
   // Surfaces whose rectangle has fewer pixels for each edge of their boundary are left out: they hardly cover
@@ -81,6 +81,11 @@ struct SurfaceDrawing {
   // Surfaces are drawn, the nearest ones first, until they have cost so much: 1 for each edge of their
   // boundaries, 1 for each tile of 32 x 8 pixels, and 8 for each time that some are drawn together.
   std::uint32_t budget = 60000;
+};
+
+// What a draw() of surfaces draws. Whatever the values are, what is covered is hidden.
+struct SurfaceDrawing {
+  SurfaceLimits limits{};
   ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
   bool draw_resting = false;        // what rests is drawn too
   // Empty, or boxes in scene space that are to be hidden: surfaces are drawn only where they are before one
@@ -95,7 +100,7 @@ struct SurfaceDrawing {
 struct SurfaceStats {
   std::uint32_t groups = 0;  // of clusters that were drawn together
   std::uint32_t edges = 0;   // of their boundaries
-  std::uint32_t work = 0;    // what they cost, as SurfaceDrawing::budget counts it
+  std::uint32_t work = 0;    // what they cost, as SurfaceLimits::budget counts it
   std::uint32_t gain = 0;    // pixels that became nearer by an eighth or more, before targets
 };
 

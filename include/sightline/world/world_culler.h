@@ -18,10 +18,8 @@ namespace sightline {
 
 struct WorldCullerSettings {
   RasterSettings raster{};  // of the depth buffer into which surfaces are drawn
-  // How the surfaces of an instance or a join are drawn; `budget` is for all of a view. What says which
-  // of them (`step`, `targets`, `useful_only`, `draw_resting`) has no effect.
-  SurfaceDrawing drawing{};
-  bool occlusion = true;  // false: by the view's volume alone
+  SurfaceLimits drawing{};  // of the surfaces of an instance or a join; `budget` is for all of a view
+  bool occlusion = true;    // false: by the view's volume alone
   // Only instances that have one of these bits are drawn in the view (Instance::groups).
   std::uint32_t groups = 0xffffffffu;
   // Pixels of the depth buffer: where the rounding of a join's positions (WorldJoin::rounding) may move its

@@ -17,7 +17,7 @@ struct WorldSightSettings {
   std::uint32_t pixels = 64;           // of each side of the depth buffer that is drawn for a question
   double near_distance = 0.05;         // metres: what is nearer to the point hides nothing
   std::uint32_t groups = 0xffffffffu;  // only instances with one of these bits hide (Instance::groups)
-  std::uint32_t budget = 20000;        // SurfaceDrawing::budget, of each question
+  std::uint32_t budget = 20000;        // SurfaceLimits::budget, of each question
 };
 
 // Answers for whole boxes, not for a few rays to them: kHidden only if no point of the box can be seen from

@@ -25,11 +25,8 @@ namespace sightline::culling {
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
-  SurfaceDrawer(SurfaceUse use, const SurfaceDrawing& drawing, double budget_us, const CoverageRule* coverage)
-      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing), budget_us_(budget_us) {
-    drawing_.targets = {};
-    drawing_.useful_only = false;
-  }
+  SurfaceDrawer(SurfaceUse use, const SurfaceLimits& limits, double budget_us, const CoverageRule* coverage)
+      : use_(coverage == nullptr ? use : SurfaceUse::kNone), limits_(limits), budget_us_(budget_us) {}
 
   void prepare(const CullingScene& scene) {
     surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
@@ -127,8 +124,8 @@ class SurfaceDrawer {
   template <typename Buffer>
   double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double pixel_factor, double budget) const {
     SurfaceDrawing drawing = upTo(budget);
-    drawing.min_pixels *= pixel_factor;
-    drawing.min_patch_pixels *= pixel_factor;
+    drawing.limits.min_pixels *= pixel_factor;
+    drawing.limits.min_patch_pixels *= pixel_factor;
     draw(buffer, objects, ViewStep::kJump, drawing);
     return draws() ? buffer.surfaceStats().work : 0.0;
   }
@@ -180,9 +177,9 @@ class SurfaceDrawer {
     if (!aims_.boxes().empty()) {
       SurfaceDrawing drawing = whatIsLeft(false);
       drawing.draw_resting = most_is_new;
-      drawing.budget = aims_.aimAtShown(shown, news_, built_work_, drawing.budget,
-                                        [this](ObjectId object) { return boundsOf(object); });
-      if (drawing.budget == 0) {
+      drawing.limits.budget = aims_.aimAtShown(shown, news_, built_work_, drawing.limits.budget,
+                                               [this](ObjectId object) { return boundsOf(object); });
+      if (drawing.limits.budget == 0) {
         return false;
       }
       drawing.targets = aims_.boxes();
@@ -194,7 +191,7 @@ class SurfaceDrawer {
       return false;
     }
     // What comes into view is not counted in the budget, but for one of time.
-    SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
+    SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : SurfaceDrawing{.limits = limits_};
     drawing.draw_resting = most_is_new;
     draw(buffer, news_, ViewStep::kSame, drawing);
     const double drawn = count(buffer);
@@ -204,10 +201,10 @@ class SurfaceDrawer {
 
   // How surfaces are drawn with what is left of the frame's budget.
   SurfaceDrawing whatIsLeft(bool jumped) const {
-    SurfaceDrawing drawing = usual_work_.limited(drawing_, jumped);
-    const double budget = timed_.limits() ? std::min<double>(drawing.budget, timed_.work()) : drawing.budget;
-    drawing.budget = static_cast<std::uint32_t>(std::max(budget - work_, 0.0));
-    return drawing;
+    SurfaceLimits limits = usual_work_.limited(limits_, jumped);
+    const double budget = timed_.limits() ? std::min<double>(limits.budget, timed_.work()) : limits.budget;
+    limits.budget = static_cast<std::uint32_t>(std::max(budget - work_, 0.0));
+    return {.limits = limits};
   }
   // Counts what was drawn last, and returns its work.
   template <typename Buffer>
@@ -220,9 +217,9 @@ class SurfaceDrawer {
     return buffer.surfaceStats().work;
   }
   SurfaceDrawing upTo(double budget) const {
-    SurfaceDrawing drawing = drawing_;
-    drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing.budget));
-    return drawing;
+    SurfaceLimits limits = limits_;
+    limits.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, limits.budget));
+    return {.limits = limits};
   }
   template <typename Buffer>
   void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step, SurfaceDrawing drawing) const {
@@ -233,7 +230,7 @@ class SurfaceDrawer {
   }
 
   SurfaceUse use_;
-  SurfaceDrawing drawing_;
+  SurfaceLimits limits_;
   double budget_us_;
   TimedBudget timed_{0.0};
   // These are the frame's, as SurfaceStats::work: what counts in the budget, and what of it was drawn before

@@ -35,7 +35,7 @@ std::uint32_t tilesIn(const PixelRectangle& r) {
   return r.empty() ? 0 : tiles(r.x0, r.x1, kTileWidth) * tiles(r.y0, r.y1, kTileHeight);
 }
 
-// What a group costs, as SurfaceDrawing::budget counts it.
+// What a group costs, as SurfaceLimits::budget counts it.
 std::uint64_t workOf(std::uint32_t edges, std::uint32_t tiles) {
   return std::uint64_t{edges} + tiles + 8;
 }
@@ -66,7 +66,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const scene::PixelView& view,
   memory_ = &memory;
   start(set);
   memory.beginView(set, view.eye, drawing.step);
-  view_.begin(set, view, drawing.min_pixels, map.target());
+  view_.begin(set, view, drawing.limits.min_pixels, map.target());
   chains_.begin(set, view, view_.clipDepth(), map.buffer());
   if (drawing_.useful_only) {
     listUseful();
@@ -124,7 +124,7 @@ void SurfaceRaster::listUseful() {
 
 // Whether a surface is worth drawing at all. pixels: that may become nearer.
 bool SurfaceRaster::pays(std::uint32_t pixels, std::uint32_t edges) const {
-  return pixels >= drawing_.pixels_per_edge * edges;
+  return pixels >= drawing_.limits.pixels_per_edge * edges;
 }
 
 // What is known of a patch is found again only when the eye has moved. In an orthographic view it depends on
@@ -165,7 +165,7 @@ void SurfaceRaster::addPart(const PartImage& image, std::uint32_t pixels) {
     PatchImage& patch = shown_[i];
     const SurfacePatch& source = set_->patches[patch.patch];
     const bool alone = !leavesOut(memory_->patch_rests[patch.patch]) &&
-                       patch.rectangle.area() >= drawing_.min_patch_pixels &&
+                       patch.rectangle.area() >= drawing_.limits.min_patch_pixels &&
                        pays(wanted_[i], source.edge_count);
     if (wanted_[i] == 0 || !(together || alone)) {
       continue;
@@ -225,7 +225,7 @@ void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
       }
     }
   }
-  view_.imagesOf(sides_, together ? 0.0 : drawing_.min_patch_pixels, shown_);
+  view_.imagesOf(sides_, together ? 0.0 : drawing_.limits.min_patch_pixels, shown_);
 }
 
 // Adds a patch alone, as one group.
@@ -286,10 +286,10 @@ void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Surface
 
 // What groups cost is only known when they have been drawn.
 bool SurfaceRaster::withinBudget() {
-  if (work_ + waiting_work_ >= drawing_.budget) {
+  if (work_ + waiting_work_ >= drawing_.limits.budget) {
     drawGroups();
   }
-  return work_ < drawing_.budget;
+  return work_ < drawing_.limits.budget;
 }
 
 // Draws the groups that wait, and finds out of what use they are.

@@ -80,7 +80,7 @@ class SurfaceRaster {
   ChainEdges chains_;
   WindingMap* map_ = nullptr;  // of the view
   SurfaceStats stats_;
-  // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
+  // What was drawn in this view, and about what waits for it, as SurfaceLimits::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;
   base::SparseArray<ChainSum> sums_;  // by chain, of the largest set that was drawn
   std::uint32_t group_ = 0;           // number of the last group

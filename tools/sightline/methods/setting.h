@@ -35,7 +35,7 @@ struct Setting {
   DetailObjectsSettings detail{};
   RendererCost renderer{};
   SurfaceOption surface_option = SurfaceOption::kAutomatic;
-  SurfaceDrawing surface_drawing{};
+  SurfaceLimits surface_drawing{};
   double budget_us = 0.0;               // of a frame with surfaces
   std::uint32_t object_box_option = 0;  // 0: see objectBoxes()
   bool temporal_coherence = true;       // for the methods that have it
