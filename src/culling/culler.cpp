@@ -143,6 +143,7 @@ struct Culler::Impl {
     views_to_come.see(view);
     if (alone && views_to_come.takeHeld()) {
       stats.held = true;
+      ++held_frames;
       clearStatistics();
       keepInView(frustum);
       return;
@@ -186,6 +187,7 @@ struct Culler::Impl {
                        .moving_surfaces = moving_surfaces,
                        .max_occluders = settings.occluders.count,
                        .last_visible = answer,
+                       .held_before = std::exchange(held_frames, 0u),
                        .filter = set,
                        .filter_changed = another_set,
                        .min_node_cost = settings.min_node_cost,
@@ -268,6 +270,7 @@ struct Culler::Impl {
   std::vector<ObjectId> answer;  // what was kept in it
   bool of_several = false;       // it was found for several views, of which this frame's keeps `in_view`
   std::vector<ObjectId> in_view;
+  std::uint32_t held_frames = 0;  // since the last view that was culled
   ParallelFor parallel_for = serialFor;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()
   std::vector<OccluderId> all_moving;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "sightline/culling/culler.h"
@@ -149,6 +150,121 @@ TEST_P(WhileItPaysAny, ASetThatChangesMeanwhileIsThatOfTheMethodToo) {
     gave_up = now;
   }
   EXPECT_GT(resumed, 3);
+}
+
+View walkingView(int frame) {
+  View view = frontView();
+  view.eye.x = 0.001 * frame;
+  return view;
+}
+
+TEST(WhileItPays, SeveralViewsAreCulledAtOnce) {
+  const CulledScene scene = wallAndHidden();
+  const CullingScene parts = scene.parts();
+  const CullerSettings settings{.views_at_once = 6};
+  Culler culler(parts, whileItPays(depthPyramid(), {1e6, 0.0}), settings);
+  Culler plain(parts, depthPyramid(), settings);
+  int held = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    culler.cull(walkingView(frame));
+    plain.cull(walkingView(frame));
+    ASSERT_EQ(culler.stats().held, plain.stats().held) << frame;
+    ASSERT_EQ(visibleIn(culler), visibleIn(plain)) << frame;
+    held += culler.stats().held ? 1 : 0;
+  }
+  EXPECT_GT(held, 100);
+  EXPECT_LT(culler.visible().size(), kHiddenWalls / 2);
+}
+
+// While frames are culled by the frustum alone, each is so by its own; what was kept for several does not
+// count in between, and neither does what the frustum kept afterwards.
+TEST(WhileItPays, WhatIsGivenUpIsNotHeld) {
+  const CulledScene scene = wallAndHidden();
+  const CullingScene parts = scene.parts();
+  Culler culler(parts, whileItPays(depthPyramid(), {1e-9, 0.0}), {.views_at_once = 6});
+  Culler frustum(parts, frustumCulling());
+  const std::vector<Box> moving{scene.bounds[7]};
+  int given_up = 0, held = 0, resumed = 0;
+  bool gave_up = false;
+  for (int frame = 0; frame < 3000; ++frame) {
+    culler.cull(walkingView(frame % 1000), moving);
+    frustum.cull(walkingView(frame % 1000));
+    const bool now = culler.statistic("renderer", "given_up") != 0;
+    if (now) {
+      ++given_up;
+      ASSERT_FALSE(culler.stats().held) << frame;
+      ASSERT_EQ(visibleIn(culler), visibleIn(frustum)) << frame;
+      ASSERT_EQ(culler.dynamicStates()[0], Visibility::kVisible) << frame;
+    } else {
+      ASSERT_EQ(visibleIn(culler).front(), ObjectId(0u)) << frame;
+      ASSERT_LT(culler.visible().size(), kHiddenWalls / 2) << frame;
+      ASSERT_EQ(culler.dynamicStates()[0], Visibility::kHidden) << frame;
+    }
+    held += culler.stats().held ? 1 : 0;
+    resumed += gave_up && !now ? 1 : 0;
+    gave_up = now;
+  }
+  EXPECT_GT(given_up, 2000);
+  EXPECT_GT(resumed, 3);
+  EXPECT_GT(held, 20);
+}
+
+// Hides everything from whoever asks, and writes down for how many frames its answers held.
+class HidesAll final : public CullingMethod {
+ public:
+  explicit HidesAll(std::vector<std::uint32_t>& held) : held_(held) {}
+  MethodTraits traits() const override { return {}; }
+  bool answersForRegions() const override { return true; }
+  void prepare(const CullingScene&) override {}
+  void build(const CullingFrame& frame) override { held_.push_back(frame.held_before); }
+  void traverse(const CullingFrame&, CullStats&, std::vector<ObjectId>&) override {}
+
+ private:
+  std::vector<std::uint32_t>& held_;
+};
+
+TEST(WhileItPays, WhatServesSeveralFramesMayTakeAsMuchMore) {
+  const CulledScene scene = wallAndHidden();
+  const ParallelFor serial = serialFor;
+  for (const std::uint32_t held : {0u, 7u}) {
+    std::vector<std::uint32_t> told;
+    const auto method = whileItPays(std::make_unique<HidesAll>(told), {1e4, 0.0});
+    method->prepare(scene.parts());
+    const View view = frontView();
+    const CullingFrame frame{.view = view,
+                             .frustum = frustumOf(view),
+                             .viewers = {.radius = 0.125},
+                             .held_before = held,
+                             .parallel_for = &serial};
+    int suspended = 0;
+    for (int i = 0; i < 100; ++i) {
+      CullStats stats;
+      std::vector<ObjectId> visible;
+      method->build(frame);
+      method->traverse(frame, stats, visible);
+      stats.build_us = 2e6;  // to save half a second a frame
+      method->finish(stats);
+      suspended += method->answersForRegions() ? 0 : 1;
+    }
+    EXPECT_EQ(suspended > 0, held == 0) << suspended;
+  }
+}
+
+TEST(WhileItPays, MethodsAreToldForHowManyFramesTheirAnswersHeld) {
+  const CulledScene scene = wallAndHidden();
+  std::vector<std::uint32_t> told, expected;
+  Culler culler(scene.parts(), std::make_unique<HidesAll>(told), {.views_at_once = 6});
+  std::uint32_t held = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    culler.cull(walkingView(frame));
+    if (culler.stats().held) {
+      ++held;
+    } else {
+      expected.push_back(std::exchange(held, 0u));
+    }
+  }
+  EXPECT_EQ(told, expected);
+  EXPECT_LT(told.size(), 20u);
 }
 
 TEST(WhileItPays, WithoutAHierarchyEverythingIsKept) {

@@ -33,10 +33,11 @@ struct CullerSettings {
   bool test_objects = true;         // objects of partly visible leaves are tested by their own boxes
   // Only what is in the potentially visible set of the eye's cell is tested, and kept.
   bool visible_sets = false;
-  // More than 1: where the method can (CullingMethod::answersForRegions()), the scene is culled for up to so
-  // many views at once, at most 16: this one and those that the camera is expected to have next, fewer the
-  // faster it moves. As long as it does what was expected, the next frames only compare what was kept with
-  // their frustum (CullStats::held). More is kept, and the frame in which the scene is culled takes longer.
+  // More than 1: where the method can (CullingMethod::answersForRegions(): depthPyramid() with surfaces
+  // alone, also in whileItPays() but not in detailObjects()), the scene is culled for up to so many views at
+  // once, at most 16: this one and those that the camera is expected to have next, fewer the faster it moves.
+  // As long as it does what was expected, the next frames only compare what was kept with their frustum
+  // (CullStats::held). More is kept, and the frame in which the scene is culled takes longer.
   std::uint32_t views_at_once = 1;
 };
 

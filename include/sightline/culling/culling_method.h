@@ -123,6 +123,8 @@ struct CullingFrame {
   std::span<const MovingSurfaces> moving_surfaces{};  // of this frame alone; for methods that draw surfaces
   std::uint32_t max_occluders = 0;                    // so many were asked for
   std::span<const ObjectId> last_visible{};           // what the last frame kept; only if not jumped
+  // Frames since the last one of which the method was told: its answers held for them (CullStats::held).
+  std::uint32_t held_before = 0;
   // What is not in it is neither tested nor kept; null: no filter.
   const culling::SetFilter* filter = nullptr;
   bool filter_changed = false;      // since the last frame

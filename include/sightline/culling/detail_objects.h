@@ -15,7 +15,9 @@ struct DetailObjectsSettings {
 
 // The method, and then a second test of each object that it kept: whether the eye is hidden from the object
 // by occluders near the object (CullingScene::near_objects). Boxes that move, and occluders that move, have
-// no part in it. It takes the time CullStats::detail_us.
+// no part in it. It takes the time CullStats::detail_us. It is a test for one eye, so each frame is culled
+// for its own view alone, whatever CullerSettings::views_at_once is.
+//
 // Statistics: those of the method, and "detail" with tested and culled.
 std::unique_ptr<CullingMethod> detailObjects(std::unique_ptr<CullingMethod> method,
                                              const DetailObjectsSettings& settings = {});

@@ -21,6 +21,9 @@ struct RendererCost {
 // on measured times then, and is conservative always. Gain and cost are compared in every fourth frame, in
 // which the frustum culls once more. The scene needs a hierarchy, whatever the method.
 //
+// Where several views are culled at once (CullerSettings::views_at_once), the cost is shared among the frames
+// for which the answers hold, and only frames that are culled are counted.
+//
 // Statistics: those of the method, and "renderer" with given_up, 1 in frames without occlusion culling, and
 // saved_us, what drawing the removed objects would have taken when it was last estimated.
 std::unique_ptr<CullingMethod> whileItPays(std::unique_ptr<CullingMethod> method, const RendererCost& cost);

@@ -29,6 +29,7 @@ class WhileItPays final : public CullingMethod {
   }
   bool wantsOccluders() const override { return !pays_.suspended() && method_->wantsOccluders(); }
   bool drawsBodies() const override { return method_->drawsBodies(); }
+  bool answersForRegions() const override { return !pays_.suspended() && method_->answersForRegions(); }
 
   void prepare(const CullingScene& scene) override {
     method_->prepare(scene);
@@ -45,6 +46,8 @@ class WhileItPays final : public CullingMethod {
     resumes_ = gave_up && !given_up_;
     since_trial_ = resumes_ ? 0 : since_trial_ + 1;
     filter_changed_ = filter_changed_ || frame.filter_changed;
+    // Answers for several views are expected to hold for as many frames as the last ones did.
+    frames_ = frame.viewers.several() ? 1.0 + frame.held_before : 1.0;
     if (frame.jumped) {
       pays_.tryAgain();
     }
@@ -71,8 +74,9 @@ class WhileItPays final : public CullingMethod {
       filter_changed_ = false;
     }
     if (given_up_ || compared_) {
-      // Without the method the frustum would have culled once, for the comparison it did so once more.
-      pays_.frame(stats.totalUs() - 2.0 * frustum_us_, saved_us_);
+      // Without the method the frustum would have culled once a frame, for the comparison it did so once
+      // more.
+      pays_.frame((stats.totalUs() - frustum_us_) / frames_ - frustum_us_, saved_us_);
     }
     collectStatistics();
   }
@@ -182,7 +186,8 @@ class WhileItPays final : public CullingMethod {
   bool resumes_ = false;                      // and it was in the last one
   bool filter_changed_ = false;               // since the last frame that the method saw
   bool compared_ = false;                     // in this frame
-  std::uint32_t since_trial_ = 0;             // frames
+  std::uint32_t since_trial_ = 0;             // frames of which this was told
+  double frames_ = 1.0;                       // for which the answers of this one are expected to hold
   double frustum_us_ = 0.0, saved_us_ = 0.0;  // of the last comparison
   std::vector<ObjectId> in_frustum_;
   std::vector<MethodStatistic> statistics_;
