@@ -45,8 +45,8 @@ function(sightline_options target)
   cmake_parse_arguments(PARSE_ARGV 1 own "UNCHECKED" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  # The same bits everywhere: no contraction to fused multiply-add, no fast-math. It is said also where nobody asks for
-  # it, because a program that has Sightline as a subdirectory may have -ffast-math or -Ofast in CMAKE_CXX_FLAGS.
+  # The same bits everywhere: no contraction to fused multiply-add, no fast-math. Both flags are always given, because a
+  # program that has Sightline as a subdirectory may have -ffast-math or -Ofast in CMAKE_CXX_FLAGS.
   # Designated initialisers leave out the members that keep their defaults.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
     -Wno-missing-field-initializers -fno-fast-math -ffp-contract=off)

@@ -91,7 +91,7 @@ Result<ReadMesh> readMesh(const MeshView& mesh) {
   }
   if (mesh.vertex_count <= corners) {
     read.positions.resize(mesh.vertex_count);
-    for (std::uint32_t vertex = 0; vertex < mesh.vertex_count; ++vertex) {
+    for (const std::uint32_t vertex : read.indices) {
       read.positions[vertex] = positionOf(mesh, vertex);
     }
   } else {

@@ -400,7 +400,7 @@ void World::setTransforms(std::span<const InstanceId> instances, std::span<const
       own.moves[i] = own.movedInPlace(instances[i], world_from_mesh[i], own.version + i + 1);
     }
   };
-  // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
+  // std::function keeps one reference without memory of its own; `move` has more.
   parallel_for(static_cast<std::uint32_t>(count),
                [&move](std::uint32_t begin, std::uint32_t end) { move(begin, end); });
   own.version += count;

@@ -75,7 +75,7 @@ void WorldData::leaveSets(std::uint32_t id) {
 SetsId World::addSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin,
                       std::span<const ObjectId> doors) {
   WorldData& own = *data_;
-  // A number is never used again: a culler may not have been told that its sets were dropped.
+  // A number is never used again: a culler may not have been told that its sets were removed.
   const auto number = static_cast<std::uint32_t>(own.sets.size());
   own.sets.emplace_back();
   own.sets[number] = {

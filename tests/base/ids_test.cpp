@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <unordered_set>
 
 namespace sightline {
@@ -15,6 +16,8 @@ TEST(Id, TakesAnyWholeNumberThatFits) {
   EXPECT_EQ(ObjectId(0xfffffffeu).value, 0xfffffffeu);
   EXPECT_TRUE(ObjectId(0xfffffffell).valid());
 }
+
+static_assert(!std::is_constructible_v<ObjectId, double>);
 
 TEST(Id, IsInvalidWhereTheNumberDoesNotFit) {
   EXPECT_FALSE(ObjectId().valid());

@@ -69,6 +69,16 @@ TEST(VectorOver, LetsItsItemsGoWhenAnotherOneIsAssigned) {
   EXPECT_EQ(*given.items, (std::array<std::uint32_t, 4>{1, 2, 3, 4}));
 }
 
+TEST(VectorOver, FreesNothingOfOthersWhereAnotherHasItsAllocator) {
+  const Given given;
+  LargeVector<std::uint32_t> vector = given.vector();
+  LargeVector<std::uint32_t> other(vector.get_allocator());
+  other.push_back(9);
+  vector = other;
+  EXPECT_EQ(vector, other);
+  EXPECT_EQ(*given.items, (std::array<std::uint32_t, 4>{1, 2, 3, 4}));
+}
+
 TEST(VectorOver, GrowsIntoMemoryOfItsOwn) {
   const Given given;
   LargeVector<std::uint32_t> vector = given.vector();

@@ -88,7 +88,7 @@ TEST_P(OddViews, WithoutAFarPlaneTheSameIsHidden) {
   expectVisible(scene_.view, kSeen, "infinite far distance");
 }
 
-// What is seen from there lies within less than the eye's coordinates are rounded by.
+// From so far away, all boxes lie within the rounding of the eye's coordinates.
 TEST_P(OddViews, FromAnyDistanceNothingInSightIsHidden) {
   scene_.view.z_far = kInfinite;
   for (const auto& [name, settings, stands_for_method] : kStructures) {

@@ -221,8 +221,8 @@ View narrowerBy(double slope, const View& wide, const View& from, double skew) {
   return view;
 }
 
-// The borders of such a view are where points have these places in its picture, which is not quite where its
-// axes point.
+// With skewed axes, the borders of the picture are not where right and up point: they follow from
+// clipFromScene().
 TEST(ViewsToCome, TheWideViewShowsAllOfViewsWhoseAxesAreNotQuiteAtRightAngles) {
   std::size_t contained = 0, outside = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

@@ -93,6 +93,11 @@ TEST(WorldMesh, OfALargeBufferIsAsOfItsOwn) {
                                             .indices = indices.data(),
                                             .index_count = indices.size()});
   EXPECT_EQ(surfaceBytes(first->surfaces), surfaceBytes(mesh.surfaces));
+  const Result<WorldMesh> few = makeMesh({.positions = own.data(),
+                                          .vertex_count = static_cast<std::uint32_t>(indices.size()),
+                                          .indices = indices.data(),
+                                          .index_count = indices.size()});
+  EXPECT_EQ(surfaceBytes(few->surfaces), surfaceBytes(mesh.surfaces));
 }
 
 TEST(WorldMesh, SaysWhetherItIsInsideOut) {

@@ -148,7 +148,7 @@ TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
   EXPECT_TRUE(keepsAll());
   world.removeSets(id);
   world.removeSets(SetsId());
-  // The number is not used again: the culler was not told that its sets were dropped.
+  // The number is not used again: the culler was not told that its sets were removed.
   const fake_sets::FakeSets fewer(std::span(baked.boxes).first(3));
   EXPECT_NE(world.addSets(given, fewer.boxes()), id);
   EXPECT_TRUE(keepsAll());
@@ -296,7 +296,7 @@ TEST(WorldSets, WhatIsShorterThanItWasBakedIsATombstoneAtWhicheverEnd) {
        {std::pair(Vec3d(-3, -3, -11), Vec3d(2, 6, 1)), std::pair(Vec3d(1, -3, -11), Vec3d(2, 6, 1)),
         std::pair(Vec3d(-3, -3, -11), Vec3d(6, 2, 1)), std::pair(Vec3d(-3, 1, -11), Vec3d(6, 2, 1))}) {
     WallBeforeCrate scene({.world_from_mesh = boxAt(corner, size)});
-    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    const SetsId id = scene.world.addSets(scene.ids, scene.sets.boxes());
     EXPECT_EQ(scene.world.tombstones(id), 1u) << corner.x << " " << corner.y;
     WorldCuller culler({.occlusion = false});
     culler.useSets(id, &scene.sets);
@@ -307,12 +307,12 @@ TEST(WorldSets, WhatIsShorterThanItWasBakedIsATombstoneAtWhicheverEnd) {
 // An instance belongs to the sets that named it last. The earlier ones know of nothing that it does later.
 TEST(WorldSets, WhatOtherSetsNameIsATombstoneOfTheEarlierOnes) {
   WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)});
-  const SetsId both = scene.world.useSets(scene.ids, scene.sets.boxes());
+  const SetsId both = scene.world.addSets(scene.ids, scene.sets.boxes());
   WorldCuller culler({.occlusion = false});
   culler.useSets(both, &scene.sets);
   EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));
   const fake_sets::FakeSets of_wall(std::span(scene.boxes).first(1));
-  const SetsId wall_alone = scene.world.useSets(std::span(scene.ids).first(1), of_wall.boxes());
+  const SetsId wall_alone = scene.world.addSets(std::span(scene.ids).first(1), of_wall.boxes());
   EXPECT_EQ(scene.world.tombstones(both), 1u);
   EXPECT_EQ(scene.world.tombstones(wall_alone), 0u);
   scene.world.setTransform(scene.ids[0], WallBeforeCrate::wallMovedBy(20.0));
@@ -325,7 +325,7 @@ TEST(WorldSets, HideNothingInViewsThatLeaveOutAGroupOfTheirObjects) {
   for (const std::uint32_t of_wall : {1u, 3u}) {
     WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0), .groups = of_wall});
     scene.world.setGroups(scene.ids[1], 3);
-    const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+    const SetsId id = scene.world.addSets(scene.ids, scene.sets.boxes());
     for (const std::uint32_t drawn : {1u, 2u, 3u}) {
       WorldCuller culler({.occlusion = false, .groups = drawn});
       culler.useSets(id, &scene.sets);
@@ -348,8 +348,8 @@ TEST(WorldSets, OfSeveralCellsSpeakForTheirOwnObjectsAlone) {
   }
   fake_sets::FakeSets sets[] = {fake_sets::FakeSets(scene.boxes), fake_sets::FakeSets(scene.boxes)};
   WorldCuller culler({.occlusion = false});
-  culler.useSets(world.useSets(scene.ids, sets[0].boxes()), &sets[0]);
-  culler.useSets(world.useSets(others, sets[1].boxes()), &sets[1]);
+  culler.useSets(world.addSets(scene.ids, sets[0].boxes()), &sets[0]);
+  culler.useSets(world.addSets(others, sets[1].boxes()), &sets[1]);
   for (const unsigned hides : {3u, 1u, 3u, 2u, 0u, 1u}) {  // a bit for each cell
     for (const unsigned cell : {0u, 1u}) {
       if ((hides >> cell & 1) != 0) {
@@ -365,7 +365,7 @@ TEST(WorldSets, OfSeveralCellsSpeakForTheirOwnObjectsAlone) {
 
 TEST(WorldSets, WhatChangesItsGroupsIsATombstone) {
   WallBeforeCrate scene({.world_from_mesh = WallBeforeCrate::wallMovedBy(0.0)});
-  const SetsId id = scene.world.useSets(scene.ids, scene.sets.boxes());
+  const SetsId id = scene.world.addSets(scene.ids, scene.sets.boxes());
   WorldCuller culler({.occlusion = false, .groups = 1});
   culler.useSets(id, &scene.sets);
   EXPECT_FALSE(WallBeforeCrate::showsCrate(culler, scene.world, scene.ids));

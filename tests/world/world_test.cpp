@@ -165,8 +165,8 @@ TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
   EXPECT_TRUE(shows());
 }
 
-// A panel goes to another place in a batch or by itself: after the join, or between its preparation and its
-// use, and then not for the first time.
+// A panel goes to another place in a batch or by itself: after the join, or between joinInput() and
+// addJoin(), and then not for the first time.
 TEST(World, AMemberThatIsAlwaysOnTheMoveHidesNothingWhereItWas) {
   for (const bool prepared_before : {false, true}) {
     for (const bool in_batch : {false, true}) {
@@ -224,22 +224,6 @@ TEST(World, AJoinHidesNothingInViewsThatLeaveOutAGroupOfItsMembers) {
       EXPECT_TRUE(keeps(culler, scene.crate)) << groups;
     }
   }
-}
-
-// Two worlds are told the same, but for where a panel is.
-TEST(World, AJoinOfAnotherWorldHidesNothing) {
-  PanelsAndCrate here, there;
-  const Mat4 home = boxAt({0, -2, -4}, {0.5, 4, 1}), away = boxAt({9, -2, -4}, {0.5, 4, 1}),
-             farther = boxAt({19, -2, -4}, {0.5, 4, 1});
-  here.story.move(here.panels[4], farther);
-  here.story.move(here.panels[4], away);
-  there.story.move(there.panels[4], away);
-  there.story.move(there.panels[4], home);
-  const WorldJoin prepared = makeJoin(there.story.world.joinInput(there.panels));
-  there.story.world.addJoin(prepared);
-  EXPECT_FALSE(there.showsCrate());
-  here.story.world.addJoin(prepared);
-  EXPECT_TRUE(here.showsCrate());
 }
 
 // Another thread finds the surfaces of a join while a member moves away, or only what the join is to hide.

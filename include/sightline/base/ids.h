@@ -17,8 +17,10 @@ struct Id {
 
   constexpr Id() = default;
   constexpr explicit Id(std::uint32_t v) : value(v) {}
-  // Of a number that is negative or does not fit: the invalid one.
+  constexpr explicit Id(std::floating_point auto) = delete;
+  // A number that is negative or does not fit makes the invalid id.
   template <std::integral Number>
+    requires(sizeof(Number) > 1)
   constexpr explicit Id(Number number) {
     if (std::in_range<std::uint32_t>(number)) {
       value = static_cast<std::uint32_t>(number);

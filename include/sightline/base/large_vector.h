@@ -56,7 +56,7 @@ class LargeAllocator {
   LargeAllocator(LargeAllocator&&) noexcept = default;
   LargeAllocator& operator=(LargeAllocator&&) noexcept = default;
   ~LargeAllocator() = default;
-  // A vector over given items that another one is copied to lets them go, so that nothing is written there.
+  // When another vector is copied into one over given items, these are let go: nothing is written there.
   LargeAllocator& operator=(const LargeAllocator& other) {
     if (this != &other) {
       given_.reset();
@@ -86,7 +86,10 @@ class LargeAllocator {
     }
   }
 
-  friend bool operator==(const LargeAllocator& a, const LargeAllocator& b) { return a.given_ == b.given_; }
+  // Not even two of the same given items are equal: a vector over them lets them go before another is copied.
+  friend bool operator==(const LargeAllocator& a, const LargeAllocator& b) {
+    return a.given_ == nullptr && b.given_ == nullptr;
+  }
 
  private:
   std::shared_ptr<base::GivenItems> given_;

@@ -25,8 +25,8 @@ class [[nodiscard]] Result {
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  // Precondition of the accessors of the value: has_value(). Of error(): !has_value(). Of a temporary, as in
-  // *findSomething(), the value is moved.
+  // The accessors of the value require has_value(); error() requires the opposite. They move the value out of
+  // a temporary, as in *findSomething().
   T& value() & {
     assert(has_value());
     return *std::get_if<0>(&state_);

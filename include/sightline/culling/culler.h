@@ -55,7 +55,8 @@ struct CullerSettings {
 class Culler {
  public:
   // Where the hierarchy is not of the scene's boxes, because it names other objects or a box lies outside the
-  // leaves that name it (kd-tree: outside the box around them), cull() keeps everything (CullStats::scene_fault).
+  // leaves that name it (kd-tree: outside the box around them), cull() keeps everything, and
+  // CullStats::scene_fault says why.
   //
   // Sets are of the scene if every object's box is exactly the baked one; that triangles within equal boxes
   // are others cannot be seen here, see SightFile::matches. For orthographic views everything is in the set.
@@ -108,7 +109,8 @@ class Culler {
   // The form without a scene takes the same memory as before, changed in place: for boxes in a vector that
   // has grown, and for other objects, call the other form. A change without reset() is noticed where the
   // number of nodes, of their objects, of occluders or of their corners is another one: then cull() keeps
-  // everything (CullStats::scene_fault). What keeps all these numbers, as boxes that moved, cannot be noticed.
+  // everything, and CullStats::scene_fault says why. What keeps all these numbers, as boxes that moved,
+  // cannot be noticed.
   void reset();
   void reset(const CullingScene& scene);
 

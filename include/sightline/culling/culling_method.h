@@ -72,7 +72,8 @@ struct CullStats {
   // What is wrong with the scene, whose parts do not fit together or which changed without reset(); null
   // where nothing is. Otherwise every object was kept, also outside the frustum, and no other count is made.
   const char* scene_fault = nullptr;
-  // Null, or what of the scene the culler goes without: what it was not given, or sets of other boxes.
+  // Null, or that a method which has occluders was given neither surfaces nor occluders, or that sets are of
+  // other boxes and are not used.
   const char* scene_note = nullptr;
   // The answer was found in an earlier frame (CullerSettings::views_at_once): no other count is made.
   bool held = false;

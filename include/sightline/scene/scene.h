@@ -46,7 +46,7 @@ struct Object {
 // - every index of an object is below positions.size();
 // - of every object, first_index + index_count is at most indices.size(), and index_count a multiple of 3;
 // - every object's material is valid and below materials.size(): a default Object has none;
-// - every object's bounds hold all of its vertices (updateBounds()).
+// - every object's bounds hold all of its vertices, or are empty where one is not finite (updateBounds()).
 struct SceneView {
   std::span<const Vec3f> positions{};
   std::span<const std::uint32_t> indices{};  // into positions

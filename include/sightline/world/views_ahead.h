@@ -12,9 +12,9 @@ struct CameraMotion {
   Vec3d velocity{};        // metres a second, world space
   Vec3d turn_rad_per_s{};  // about this axis, counter-clockwise as seen from its tip
   double spread = 0.0;     // metres a second by which the velocity may be another one
-  // Metres: how far away that is which `spread` moves across the view. 0: the geometric mean of the view's
-  // near and far planes, where a near plane within 1 cm counts as at 1 cm; 10 m if the far one is infinite.
-  // Has no effect on orthographic views.
+  // Distance, metres, of what should stay in view although the velocity is off by `spread`. 0 or less: the
+  // geometric mean of the view's near and far planes, where a near plane within 1 cm counts as at 1 cm; 10 m
+  // if the far one is infinite. Has no effect on orthographic views.
   double depth = 0.0;
 };
 

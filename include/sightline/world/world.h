@@ -156,10 +156,11 @@ class World {
   MeshId meshOf(InstanceId instance) const;
   std::uint64_t userDataOf(InstanceId instance) const;  // 0 if it is not there
 
-  // Copies the triangles of instances for makeJoin(), by which what touches hides jointly: walls of panels,
-  // floors of tiles, a level of brushes. Worth it for what does not move. Positions are rounded to single
-  // precision, relative to the middle of the join (WorldJoin::rounding), and touch where they are equal then.
-  // Takes some nanoseconds a triangle.
+  // Copies the triangles of instances for makeJoin(). Instances of a join that touch hide jointly: walls of
+  // panels, floors of tiles, a level of brushes. Those that are hidden or hide nothing are left out. Changes
+  // nothing, so that several threads may call it. Worth it for what does not move. Positions are rounded to
+  // single precision, relative to the middle of the join (WorldJoin::rounding), and touch where they are
+  // equal then. Takes some nanoseconds a triangle.
   JoinInput joinInput(std::span<const InstanceId> instances) const;
   // Takes microseconds. Instances that are in another join leave it. Those that have changed since
   // joinInput() leave this one at once, and all if that was of another World, such as the last level's. One

@@ -332,8 +332,8 @@ void forEachNear(const Place& centre, int distance, Visit&& visit) {
 // Removes the voxels that are higher than this above a blocked one, or above none.
 void cutAbove(const VoxelBits& blocked, double voxels, VoxelBits& reached) {
   const Place size = blocked.size();
-  const int below =
-      1 + static_cast<int>(std::min<double>(voxels, size[1]));  // as many layers hold its ground
+  // A voxel is kept if one of so many layers below it is blocked.
+  const int below = 1 + static_cast<int>(std::min<double>(voxels, size[1]));
   std::vector<std::uint64_t> above_ground(blocked.row(0, 0).size());
   for (int z = 0; z < size[2]; ++z) {
     for (int y = 0; y < size[1]; ++y) {

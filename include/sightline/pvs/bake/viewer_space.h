@@ -40,8 +40,8 @@ struct FreeSpace {
 // that touch none and are connected by their faces, and a layer of voxels around them, so that all of a room
 // up to its walls is found. A point whose own voxel is not free starts from all of the nearest free ones, at
 // most two voxels away, on whichever side of a wall they are, and its own surroundings belong to the result
-// as well. The same input gives the same boxes. Returns
-// an error if no start is near a free voxel of the region, or if settings are out of range.
+// as well. The same input gives the same boxes. Returns an error if no start is near a free voxel of the
+// region, or if settings are out of range.
 Result<FreeSpace> findFreeSpace(const SceneView& scene, std::span<const Vec3d> from,
                                 const FreeSpaceSettings& settings = {},
                                 const ParallelFor& parallel_for = serialFor);

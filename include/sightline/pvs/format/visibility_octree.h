@@ -140,11 +140,12 @@ SIGHTLINE_INLINE Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeC
           gridLine(min.z, max.z, c.level, c.at[2] + 1)};
 }
 
-// The box in a cell, of the octree with this box, where viewers are expected.
+// The coordinate of a step of ViewerBounds in a cell, of an octree of this extent.
 SIGHTLINE_INLINE double viewersLine(double min, double max, const OctreeCell& c, std::size_t axis,
                                     std::uint32_t step) {
   return gridLine(min, max, c.level + kViewerLevels, (c.at[axis] << kViewerLevels) + step);
 }
+// The box in a cell, of the octree with this box, where viewers are expected.
 SIGHTLINE_INLINE Vec3d viewersMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c,
                                   const ViewerBounds& v) {
   return {viewersLine(min.x, max.x, c, 0, v.first[0]), viewersLine(min.y, max.y, c, 1, v.first[1]),
