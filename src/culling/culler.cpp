@@ -88,7 +88,8 @@ struct Culler::Impl {
       return "CullingScene::sets are of other boxes than CullingScene::object_bounds, and are not used";
     }
     if (traits.occluders && hidesNothing(of)) {
-      return "CullingScene::surfaces and CullingScene::occluders are empty: only what moves can be drawn as an occluder";
+      return "CullingScene::surfaces and CullingScene::occluders are empty: only what moves can be drawn as "
+             "an occluder";
     }
     return nullptr;
   }

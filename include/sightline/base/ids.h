@@ -20,8 +20,7 @@ struct Id {
   constexpr explicit Id(std::floating_point auto) = delete;
   // A number that is negative or does not fit makes the invalid id.
   template <std::integral Number>
-    requires(sizeof(Number) > 1)
-  constexpr explicit Id(Number number) {
+  requires(sizeof(Number) > 1) constexpr explicit Id(Number number) {
     if (std::in_range<std::uint32_t>(number)) {
       value = static_cast<std::uint32_t>(number);
     }
