@@ -31,6 +31,8 @@ std::string faultOfNumbers(const SceneView& scene, const Object& object) {
 
 // What is wrong with its vertices, of an object whose own numbers are right; empty if nothing is.
 std::string faultOfVertices(const SceneView& scene, const Object& object) {
+  // What is not finite comes first: updateBounds() leaves no box around it.
+  std::string outside;
   for (std::size_t i = object.first_index; i < std::size_t{object.first_index} + object.index_count; ++i) {
     const std::uint32_t index = scene.indices[i];
     if (index >= scene.positions.size()) {
@@ -41,12 +43,12 @@ std::string faultOfVertices(const SceneView& scene, const Object& object) {
     if (!isFinite(position)) {
       return "position " + std::to_string(index) + " is not finite: " + math::textOf(position);
     }
-    if (!contains(object.bounds, Box{position, position})) {
-      return "its bounds do not hold position " + std::to_string(index) + ", " + math::textOf(position) +
-             "; updateBounds() makes them";
+    if (outside.empty() && !contains(object.bounds, Box{position, position})) {
+      outside = "its bounds do not hold position " + std::to_string(index) + ", " + math::textOf(position) +
+                "; updateBounds() makes them";
     }
   }
-  return {};
+  return outside;
 }
 
 }  // namespace
