@@ -2,7 +2,6 @@
 # headers, the package that find_package(sightline) reads, and a file for pkg-config of each. The other libraries serve
 # the tool and are not installed; the tool is, as the component `tool`, with its manual and its completion.
 
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
