@@ -159,7 +159,11 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
         "clip_from_scene has no near plane in front of the eye: is ClipSpace::depth that of the matrix?"};
   }
   if (!(view.z_far > view.z_near)) {
-    return Error{"clip_from_scene has its far plane before its near plane: is ClipSpace::depth kOneToZero?"};
+    return Error{
+        range.far > range.near
+            ? "clip_from_scene has its far plane before its near plane: is ClipSpace::depth kOneToZero?"
+            : "clip_from_scene has its far plane before its near plane: ClipSpace::depth is kOneToZero, "
+              "but the matrix is not reversed"};
   }
   return view;
 }
@@ -214,6 +218,8 @@ double nearestBeyond(const View& view, const Row& plane) {
   }
   return at_eye >= 0.0 ? 0.0 : -at_eye / most;
 }
+
+constexpr double kNearTolerance = 0.01;  // see ClipSpace::z_near
 
 Result<Rows> rowsOf(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
   const auto finite = [](double value) { return std::isfinite(value); };
@@ -271,7 +277,16 @@ Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_spa
   constexpr double kConstant = 0x1p-40;
   const bool perspective = rows.w.length() * std::abs(range.far - range.near) > kConstant * rows.z.length();
   const Result<View> view = perspective ? perspectiveView(rows, range) : orthographicView(rows, range);
-  return view ? validate(*view) : view;
+  if (!view) {
+    return view;
+  }
+  if (perspective && clip_space.z_near > 0.0 &&
+      !(std::abs(view->z_near - clip_space.z_near) <= kNearTolerance * clip_space.z_near)) {
+    return Error{"clip_from_scene has its near plane at a distance of " + std::to_string(view->z_near) +
+                 ", ClipSpace::z_near says " + std::to_string(clip_space.z_near) +
+                 ": is ClipSpace::depth that of the matrix?"};
+  }
+  return validate(*view);
 }
 
 }  // namespace sightline

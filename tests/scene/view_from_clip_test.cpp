@@ -126,7 +126,7 @@ void expectView(const Result<View>& view, double far) {
 }
 
 TEST(ViewFromClip, ReadsGlFrustum) {
-  expectView(viewFromClip(glFrustum(kWindow) * lookAt(someCamera())), kWindow.far);
+  expectView(viewFromClip(glFrustum(kWindow) * lookAt(someCamera()), {}), kWindow.far);
 }
 
 TEST(ViewFromClip, ReadsTheOffCentreProjectionOfDirect3D) {
@@ -165,7 +165,7 @@ TEST(ViewFromClip, ReadsTheDownwardPicturesOfVulkan) {
 
 TEST(ViewFromClip, MirrorsALeftHandedSceneAsValidateDoes) {
   const Mat4 clip = glFrustum(kWindow) * scaling(-1, 1, 1) * lookAt(someCamera());
-  const Result<View> view = viewFromClip(clip);
+  const Result<View> view = viewFromClip(clip, {});
   ASSERT_TRUE(view);
   EXPECT_NEAR(length(view->right - someCamera().right), 0.0, 1e-12);
   EXPECT_NEAR(view->shift_x, -0.25, 1e-12);
@@ -174,7 +174,7 @@ TEST(ViewFromClip, MirrorsALeftHandedSceneAsValidateDoes) {
 
 TEST(ViewFromClip, ReadsAPictureThatIsTurnedByAQuarter) {
   const Mat4 quarter = fromRows({0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-  const Result<View> view = viewFromClip(quarter * glFrustum(kWindow) * lookAt(someCamera()));
+  const Result<View> view = viewFromClip(quarter * glFrustum(kWindow) * lookAt(someCamera()), {});
   ASSERT_TRUE(view);
   EXPECT_NEAR(length(view->up - someCamera().right), 0.0, 1e-12);
   EXPECT_NEAR(length(view->right + someCamera().up), 0.0, 1e-12);
@@ -190,7 +190,7 @@ TEST(ViewFromClip, MeasuresInTheUnitsOfTheScene) {
                          &centimetres.near, &centimetres.far}) {
     *length *= 100.0;
   }
-  expectView(viewFromClip(glFrustum(centimetres) * scaling(100, 100, 100) * lookAt(someCamera())),
+  expectView(viewFromClip(glFrustum(centimetres) * scaling(100, 100, 100) * lookAt(someCamera()), {}),
              kWindow.far);
 }
 
@@ -202,7 +202,7 @@ TEST(ViewFromClip, ReadsTheShiftOfAJitteredPicture) {
     // The picture moves by so many pixels to the right and up: the window moves to the left and down.
     projection(0, 2) -= 2 * pixels.x / width;
     projection(1, 2) -= 2 * pixels.y / height;
-    const Result<View> view = viewFromClip(projection * lookAt(someCamera()));
+    const Result<View> view = viewFromClip(projection * lookAt(someCamera()), {});
     ASSERT_TRUE(view);
     EXPECT_NEAR(view->shift_x, -2 * pixels.x / width, 1e-15);
     EXPECT_NEAR(view->shift_y, -2 * pixels.y / height, 1e-15);
@@ -213,7 +213,7 @@ TEST(ViewFromClip, ReadsTheShiftOfAJitteredPicture) {
 TEST(ViewFromClip, PutsTheEyeOfAnOrthographicViewOnItsNearPlane) {
   const Window box{-3, 5, -2, 1, -10, 80};  // 10 metres behind the camera, as engines' shadow maps begin
   const View camera = someCamera();
-  const Result<View> view = viewFromClip(glOrtho(box) * lookAt(camera));
+  const Result<View> view = viewFromClip(glOrtho(box) * lookAt(camera), {});
   ASSERT_TRUE(view) << view.error().message;
   EXPECT_TRUE(view->orthographic);
   EXPECT_NEAR(view->ortho_height, 3.0, 1e-12);
@@ -230,7 +230,7 @@ TEST(ViewFromClip, PutsTheEyeOfAnOrthographicViewOnItsNearPlane) {
 TEST(ViewFromClip, ReadsTheDepthOfAnOrthographicViewInAnyRange) {
   const Mat4 look = lookAt(someCamera());
   const Mat4 clip = glOrtho(kWindow) * look;
-  const Result<View> expected = viewFromClip(clip);
+  const Result<View> expected = viewFromClip(clip, {});
   ASSERT_TRUE(expected);
   for (const bool reversed : {false, true}) {
     Mat4 other = clip;
@@ -267,7 +267,7 @@ TEST(ViewFromClip, IsTheInverseOfClipFromScene) {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Random random(seed);
     const View view = randomView(random, false);
-    const Result<View> found = viewFromClip(clipFromScene(view));
+    const Result<View> found = viewFromClip(clipFromScene(view), {});
     ASSERT_TRUE(found) << "seed " << seed << ": " << found.error().message;
     const double slack = 1e-12 * (1.0 + length(view.eye));
     EXPECT_NEAR(length(found->eye - view.eye), 0.0, slack) << "seed " << seed;
@@ -428,7 +428,7 @@ TEST(ViewFromClip, RoundingInRowWMakesNoPerspective) {
   for (const double noise : {1e-17, -1e-17, -3e-18, 1e-15}) {
     Mat4 clip = clipFromScene(view);
     clip(3, 2) = noise;
-    const Result<View> found = viewFromClip(clip);
+    const Result<View> found = viewFromClip(clip, {});
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_TRUE(found->orthographic) << noise;
     EXPECT_NEAR(found->ortho_height, 100.0, 1e-9);
@@ -561,18 +561,33 @@ TEST(ViewFromClip, ObliqueViewsHaveANearPlaneBeforeTheEye) {
   View view;
   view.right = {1, 0, 0}, view.up = {0, 1, 0}, view.forward = {0, 0, -1};
   Mat4 matrix = clipFromScene(view);
-  EXPECT_TRUE(obliqueViewFromClip(matrix));
+  EXPECT_TRUE(obliqueViewFromClip(matrix, {}));
   matrix(0, 0) = kNotANumber;
-  EXPECT_FALSE(obliqueViewFromClip(matrix));
-  EXPECT_FALSE(obliqueViewFromClip(Mat4()));
-  EXPECT_FALSE(obliqueViewFromClip(Mat4{{}}));
+  EXPECT_FALSE(obliqueViewFromClip(matrix, {}));
+  EXPECT_FALSE(obliqueViewFromClip(Mat4(), {}));
+  EXPECT_FALSE(obliqueViewFromClip(Mat4{{}}, {}));
   // All of the picture is behind the plane z = 5.
   matrix = clipFromScene(view);
   matrix(2, 3) = -5.0;
   for (int column = 0; column < 3; ++column) {
     matrix(2, column) = (column == 2 ? 1.0 : 0.0) - matrix(3, column);
   }
-  EXPECT_FALSE(obliqueViewFromClip(matrix));
+  EXPECT_FALSE(obliqueViewFromClip(matrix, {}));
+}
+
+// The near plane of a matrix that is read with the depths of another convention is not where it was.
+TEST(ViewFromClip, RefusesAMatrixWhoseNearPlaneIsElsewhereThanTold) {
+  const Mat4 clip = glFrustum(kWindow) * lookAt(someCamera());
+  const auto depthIs = [&](ClipDepth depth, double z_near) {
+    return viewFromClip(clip, {.depth = depth, .z_near = z_near});
+  };
+  EXPECT_TRUE(depthIs(ClipDepth::kMinusOneToOne, kWindow.near));
+  EXPECT_TRUE(depthIs(ClipDepth::kMinusOneToOne, 0.995 * kWindow.near));
+  EXPECT_TRUE(depthIs(ClipDepth::kZeroToOne, 0.0)) << "nothing is told";
+  const Result<View> other = depthIs(ClipDepth::kZeroToOne, kWindow.near);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("is ClipSpace::depth that of the matrix?"), std::string::npos);
+  EXPECT_FALSE(depthIs(ClipDepth::kMinusOneToOne, 1.02 * kWindow.near));
 }
 
 }  // namespace

@@ -21,6 +21,10 @@ enum class ClipDepth : std::uint8_t {
 struct ClipSpace {
   ClipDepth depth = ClipDepth::kMinusOneToOne;
   bool y_down = false;  // Vulkan: y = -w at the upper border of the picture
+  // The distance of the near plane as the program knows it, in the units of the view's space. Greater than 0:
+  // viewFromClip() refuses a perspective matrix whose near plane is more than 1 % off, as it is where `depth`
+  // is wrong.
+  double z_near = 0.0;
 };
 
 // Returns the view of a projection matrix times a view matrix:
@@ -43,13 +47,13 @@ struct ClipSpace {
 // Give the right ClipSpace::depth: only planes in the wrong order are noticed. With a wrong one the view has
 // another near plane. A matrix of OpenGL that is read as kZeroToOne has it about twice as far away, and
 // objects before it are culled although they are visible; a matrix of Direct3D that is read as
-// kMinusOneToOne has it nearer, and what the program's near plane clips hides what is behind it. So compare
-// view->z_near with the program's own distance once. A wrong y_down only turns the view upside down.
+// kMinusOneToOne has it nearer, and what the program's near plane clips hides what is behind it. With
+// ClipSpace::z_near that is an error. A wrong y_down only turns the view upside down.
 //
 // The error says what is wrong: the matrix is not finite or not a projection, the near plane is tilted
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at
 // right angles, or validate() rejects the view.
-Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space = {});
+Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space);
 
 // A perspective view whose near plane is tilted, as those of mirrors and portals are.
 struct ObliqueView {
@@ -63,6 +67,6 @@ struct ObliqueView {
 //
 //   culler.setClipPlane(oblique->near_plane);  // a WorldCuller
 //   culler.cull(world, oblique->view);
-Result<ObliqueView> obliqueViewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space = {});
+Result<ObliqueView> obliqueViewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space);
 
 }  // namespace sightline
