@@ -22,6 +22,7 @@ static_assert(!std::is_constructible_v<ObjectId, double>);
 TEST(Id, IsInvalidWhereTheNumberDoesNotFit) {
   EXPECT_FALSE(ObjectId().valid());
   EXPECT_FALSE(ObjectId(-1).valid());
+  EXPECT_FALSE(ObjectId(std::int8_t{-2}).valid());
   EXPECT_FALSE(ObjectId(0xffffffffu).valid());
   EXPECT_FALSE(ObjectId(std::uint64_t{1} << 32).valid());
   EXPECT_FALSE(ObjectId(INT64_MIN).valid());

@@ -176,8 +176,8 @@ TEST(WhileItPays, SeveralViewsAreCulledAtOnce) {
   EXPECT_LT(culler.visible().size(), kHiddenWalls / 2);
 }
 
-// While frames are culled by the frustum alone, each is so by its own; what was kept for several does not
-// count in between, and neither does what the frustum kept afterwards.
+// Frames that are culled by the frustum alone are culled one by one: no answer is held while the method is
+// given up, and the frustum's answer is not held once it resumes.
 TEST(WhileItPays, WhatIsGivenUpIsNotHeld) {
   const CulledScene scene = wallAndHidden();
   const CullingScene parts = scene.parts();

@@ -183,7 +183,7 @@ TEST(Update, AWallThatHidesLessIsAnotherThoughItsBoxIsTheSame) {
       EXPECT_FALSE(full.file == before.file) << "edit " << i << " shows nothing";
       EXPECT_TRUE(made.file == full.file) << "edit " << i;
     }
-    // Some surfaces may change how exact all of them are, and then all is asked anew.
+    // An edit may change the rounding that holds for all surfaces. Then nothing is taken over.
     EXPECT_GE(comparable, occlusion == BakeOcclusion::kConvex ? edited.size() : 1u);
   }
 }

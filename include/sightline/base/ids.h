@@ -20,9 +20,10 @@ struct Id {
   constexpr explicit Id(std::floating_point auto) = delete;
   // A number that is negative or does not fit makes the invalid id.
   template <std::integral Number>
-  requires(sizeof(Number) > 1) constexpr explicit Id(Number number) {
-    if (std::in_range<std::uint32_t>(number)) {
-      value = static_cast<std::uint32_t>(number);
+  constexpr explicit Id(Number number) {
+    const auto whole = +number;  // std::in_range takes neither characters nor bool
+    if (std::in_range<std::uint32_t>(whole)) {
+      value = static_cast<std::uint32_t>(whole);
     }
   }
   constexpr bool valid() const { return value != 0xffffffffu; }

@@ -22,7 +22,8 @@ struct RendererCost {
 // which the frustum culls once more. The scene needs a hierarchy, whatever the method.
 //
 // Where several views are culled at once (CullerSettings::views_at_once), the cost is shared among the frames
-// for which the answers hold, and only frames that are culled are counted.
+// for which the answers hold, and only frames that are culled are counted. The gain is then that in the wider
+// view which is culled for all of them, a little more than any of them has.
 //
 // Statistics: those of the method, and "renderer" with given_up, 1 in frames without occlusion culling, and
 // saved_us, what drawing the removed objects would have taken when it was last estimated.

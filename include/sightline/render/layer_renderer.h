@@ -85,7 +85,8 @@ class LayerRenderer {
   // Objects beyond the end of the list are drawn as stored. Identities change no bit of a picture. A
   // transform may mirror: fronts stay fronts. An object whose transform is not finite is not drawn.
   void setTransforms(std::span<const Mat4> scene_from_stored);
-  // Those that are set, one for each object; empty where all are drawn as stored. Valid until the next call.
+  // Those that are set, one for each object; empty where all are drawn as stored. Valid until the next
+  // setTransforms(), which LensPicture::draw() calls too where things move.
   std::span<const Mat4> transforms() const;
 
   // Sets the pieces that may be drawn from now on; their objects may still be drawn whole. With one sample

@@ -49,9 +49,9 @@ struct PartBlur {
   LayerBlur blur = LayerBlur::kAutomatic;
 };
 
-// Where everything moves to from this frame, which LayerRenderer::transforms() are of, for motion blur.
-// Everything is taken to move in straight lines, from half the shutter's time before this frame to half of it
-// after.
+// For motion blur: where everything is in the next frame. LayerRenderer::transforms() say where it is in this
+// one. Everything is taken to move in straight lines, from half the shutter's time before this frame to half
+// of it after.
 struct FrameMotion {
   View later = {};  // the view of the next frame, of the same handedness
   // scene_from_stored in the next frame, one for each object; empty: all are as stored.

@@ -21,9 +21,10 @@ enum class ClipDepth : std::uint8_t {
 struct ClipSpace {
   ClipDepth depth = ClipDepth::kMinusOneToOne;
   bool y_down = false;  // Vulkan: y = -w at the upper border of the picture
-  // The distance of the near plane as the program knows it, in the units of the view's space. Greater than 0:
-  // viewFromClip() refuses a perspective matrix whose near plane is more than 1 % off, as it is where `depth`
-  // is wrong.
+  // Greater than 0: the distance of the near plane, as View::z_near has it, so in the units of the space that
+  // the matrix takes, also where a view matrix scales. viewFromClip() refuses a perspective matrix whose near
+  // plane is more than 1 % off, as it is where `depth` is wrong. Has no effect on orthographic matrices, nor
+  // in obliqueViewFromClip().
   double z_near = 0.0;
 };
 
@@ -48,7 +49,8 @@ struct ClipSpace {
 // another near plane. A matrix of OpenGL that is read as kZeroToOne has it about twice as far away, and
 // objects before it are culled although they are visible; a matrix of Direct3D that is read as
 // kMinusOneToOne has it nearer, and what the program's near plane clips hides what is behind it. With
-// ClipSpace::z_near that is an error. A wrong y_down only turns the view upside down.
+// ClipSpace::z_near that is an error of a perspective matrix; nothing notices it in an orthographic one. A
+// wrong y_down only turns the view upside down.
 //
 // The error says what is wrong: the matrix is not finite or not a projection, the near plane is tilted
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at

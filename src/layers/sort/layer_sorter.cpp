@@ -60,6 +60,7 @@ LayerSettings checked(LayerSettings settings) {
     settings.contact_tolerance = 0.0;
   }
   settings.conditioning_axis = conditioningAxisOf(settings);
+  settings.conditioning = settings.conditioning_axis.has_value();
   return settings;
 }
 

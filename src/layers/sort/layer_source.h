@@ -28,6 +28,7 @@ class LayerSource final : public OccluderSource {
   void candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) override;
   bool candidateOccludes(std::uint32_t candidate, std::uint32_t part) override;
   void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override;
+  // Also where `front` is not active: LayerSorter asks about parts that are in the order.
   bool occludes(std::uint32_t front, std::uint32_t back) override;
   void setActive(std::uint32_t part, bool active) override;
 

@@ -63,11 +63,9 @@ Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
                                didYouMean(name, allSpellings(command)), see)};
     }
   }
-  for (const std::string& word : app.remaining(true)) {
-    if (takesOneScene(command) && word.substr(0, 1) != "-") {
-      return Error{fmt::format("{} takes one SCENE; '{}' is one word too many (see {})", command.get_name(),
-                               word, see)};
-    }
+  if (const std::vector<std::string> words = app.remaining(true); !words.empty() && takesOneScene(command)) {
+    return Error{fmt::format("{} takes one SCENE; '{}' is one word too many (see {})", command.get_name(),
+                             words.front(), see)};
   }
   return Error{fmt::format("{} (see {})", error.what(), see)};
 }

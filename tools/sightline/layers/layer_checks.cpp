@@ -28,7 +28,7 @@ Status refusePairs(bool first, const GivenOptions& others, fmt::format_string<co
   return Error{fmt::format(reason, option)};
 }
 
-// The outputs for which each opaque part needs a layer of its own: their options, and what they were given.
+// The options that need a layer of its own for each opaque part, and whether they were given.
 GivenOptions needOpaqueLayers(const LayersOptions& options) {
   return {{"--replace", !options.pictures.replace.empty()},
           {"--blurred", !options.lens.blurred.empty()},

@@ -74,12 +74,11 @@ struct BakeSettings {
   double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
   // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
-  // Two ways to hide more where surfaces do not hide an object from a whole cell for sure. First, up to so
-  // many times (narrowings, 0 to 8), parts of the cell, of the object's box and of a window between them are
-  // cut off that no line of sight can pass. What is then still undecided is halved up to so many times
-  // (divisions, 0 to 16), across the widest of the cell, the object's box and the window, and each half is
-  // tested.
+  // Where surfaces do not surely hide an object from a whole cell, the widest of the cell, the object's box
+  // and, with narrowings, the window is halved up to this many times, 0 to 16, and each half is tested.
   std::uint32_t divisions = 0;
+  // Done first, up to this many times, 0 to 8: a window is laid between the cell and the object's box, and of
+  // all three only what lines of sight may pass is kept.
   std::uint32_t narrowings = 0;
   // With surfaces, an object is hidden if each of so many boxes around its triangles is, at most
   // kMaxObjectBoxes; 1: its own box alone. box_margin: ObjectBoxesSettings::margin, metres.
