@@ -86,8 +86,9 @@ class LargeAllocator {
     }
   }
 
-  // Never equal where items are given, not even to itself, so that a vector lets go what it has before it takes
-  // a copy. No operation of std::vector relies on the rule of allocators that this breaks: all propagate.
+  // Never equal where items are given, not even to itself, so that a vector lets go what it has before it
+  // takes a copy. No operation of std::vector relies on the rule of allocators that this breaks: all
+  // propagate.
   friend bool operator==(const LargeAllocator& a, const LargeAllocator& b) {
     return a.given_ == nullptr && b.given_ == nullptr;
   }
