@@ -78,16 +78,16 @@ struct Culler::Impl {
     if (scene.object_boxes != nullptr && settings.test_objects) {
       several_boxes.emplace(*scene.object_boxes, scene.object_bounds);
     }
-    note = noteOn(scene);
+    note = findNote();
     takeStatistics();
     clearStatistics();
   }
 
-  const char* noteOn(const CullingScene& of) const {
-    if (filter && of.sets != nullptr && !filter->usesSets()) {
+  const char* findNote() const {
+    if (filter && scene.sets != nullptr && !filter->usesSets()) {
       return "CullingScene::sets are of other boxes than CullingScene::object_bounds, and are not used";
     }
-    if (traits.occluders && hidesNothing(of)) {
+    if (traits.occluders && hidesNothing(scene)) {
       return "CullingScene::surfaces and CullingScene::occluders are empty: only what moves can be drawn as "
              "an occluder";
     }
