@@ -21,7 +21,7 @@ void freeLarge(void* memory, std::size_t bytes);  // bytes: as allocated
 
 // Bytes that somebody else owns, such as those of a mapped file. Nobody else may change them while they are
 // used. A vector over them (vectorOver) whose items are changed is changed there: map files copy-on-write.
-// One that is assigned to lets them go.
+// When another vector is copied or moved into it, they are let go; assign() and a list in braces write there.
 struct SharedBytes {
   std::span<const std::byte> bytes{};
   std::shared_ptr<const void> owner{};  // the bytes are there for as long as this is
